@@ -1,0 +1,11 @@
+//! Independent truth for light transport that ordinary tests cannot judge.
+//!
+//! This crate holds closed forms and exact expectations. It knows nothing of how light is sampled: it never imports an
+//! integrator, a ray tracer or a random number generator, and it does no I/O.
+
+pub mod camera;
+pub mod class;
+pub mod scalar;
+pub mod scene;
+mod validate;
+pub mod vector;

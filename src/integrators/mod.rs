@@ -1,0 +1,74 @@
+//! Reference integrators: what is judged.
+//!
+//! They know the scene's geometry and nothing of the closed forms. An integrator is first asked for its [`Plan`]: which
+//! path classes it samples, with which technique, and which are irregular for it and thus regularized. Then it is
+//! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
+
+use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::Entry;
+
+use crate::film::Film;
+
+/// What an integrator does about one path class.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClassPlan {
+    /// The class.
+    pub class: PathClass,
+    /// How it is sampled.
+    pub treatment: Treatment,
+    /// Why, in one sentence for a person.
+    pub reason: String,
+}
+
+/// How an integrator treats a path class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Treatment {
+    /// Sampled without bias: judged against the closed form.
+    Exact(Technique),
+    /// Every edge touches a singularity: sampled with a mollified delta at the bandwidth, judged against the exact
+    /// expectation at that bandwidth.
+    Regularized(Technique),
+    /// The method cannot build such a path.
+    NotSampled,
+}
+
+/// The sampling technique that builds a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Technique {
+    /// Next event estimation at the diffuse vertex.
+    NextEvent,
+    /// Light path connected to the pinhole.
+    LightTracing,
+    /// Regularized connection from the camera side.
+    Camera,
+    /// Merging with photons within a radius.
+    Merge,
+}
+
+/// Per class, in the order of the film's layers.
+pub type Plan = Vec<ClassPlan>;
+
+/// A bandwidth of zero or below, for methods that need none.
+pub const NO_BANDWIDTH: f64 = 0.0;
+
+/// A light transport method.
+pub trait Integrator: Send + Sync {
+    /// The short name: `pt-reg`.
+    fn name(&self) -> &'static str;
+
+    /// One line on what the method is.
+    fn title(&self) -> &'static str;
+
+    /// What the method does about each class of the scene.
+    fn plan(&self, entry: &Entry) -> Plan;
+
+    /// Compiles a validated scene into what this method must do on it and no more.
+    fn prepare(&self, entry: &Entry) -> Box<dyn Prepared>;
+}
+
+/// A method made ready for a scene.
+pub trait Prepared: Send + Sync {
+    /// Adds the contributions of `paths` paths to the film. The same (seed, iteration, paths, bandwidth) gives the same
+    /// bits. `bandwidth` is an angle [rad] or a radius [m], ignored by methods that regularize nothing.
+    fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
+}

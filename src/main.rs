@@ -1,0 +1,2 @@
+//! Command line of nephroid.
+fn main() {}
