@@ -1,2 +1,7 @@
-//! Command line of nephroid.
-fn main() {}
+//! Command line of nephroid: see `nephroid --help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    nephroid::cli::main()
+}
