@@ -55,7 +55,7 @@ pub(crate) fn print(text: &str) {
 pub(crate) fn count(text: &str) -> Result<u64, String> {
     const ALLOWED: &str = "expected a whole number from 1 to 1e15, such as 30000000 or 3e7";
     let value: f64 = text.parse().map_err(|_| ALLOWED.to_owned())?;
-    let whole = value >= 1.0 && value <= 1e15 && value.fract() == 0.0;
+    let whole = (1.0..=1e15).contains(&value) && value.fract() == 0.0;
     if whole {
         Ok(value as u64)
     } else {
