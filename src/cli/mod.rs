@@ -1,5 +1,6 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod evaluate;
 mod list;
 
 use std::process::ExitCode;
@@ -24,6 +25,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     List(list::Args),
+    Evaluate(evaluate::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -32,6 +34,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Command::List(args) => list::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -61,3 +61,10 @@ impl<S: Scalar> Flatland<S> {
         (fluence, line)
     }
 }
+
+impl Flatland<f64> {
+    /// Distance [m] from (x, y) to the caustic.
+    pub fn distance_to_fold(&self, x: f64, y: f64) -> Option<f64> {
+        self.cup.distance_to_fold(x, y, 1)
+    }
+}
