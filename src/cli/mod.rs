@@ -2,6 +2,7 @@
 
 mod evaluate;
 mod list;
+mod probe;
 
 use std::process::ExitCode;
 
@@ -26,6 +27,7 @@ struct Cli {
 enum Command {
     List(list::Args),
     Evaluate(evaluate::Args),
+    Probe(probe::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -35,6 +37,7 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         Command::List(args) => list::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
+        Command::Probe(args) => probe::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -42,7 +42,7 @@ fn floor_point(
 ) -> Result<Item, Error> {
     let x = point.receiver(0.0)?;
     let (direct, caustic) = (cup.direct(x.x, x.y), all_orders(cup, x.x, x.y, bounces));
-    let mut rows = Rows::new(point, true);
+    let mut rows = Rows::near(point, &caustic);
     rows.add("E_direct", direct)?;
     rows.add("E_caustic", caustic)?;
     rows.add("L_caustic", radiance(albedo, caustic))?;
@@ -81,21 +81,23 @@ fn view(
     item: Object<'_>,
 ) -> Result<Item, Error> {
     let (camera, aim) = item.ray()?;
-    let mut rows = Rows::new(item, true);
     let Some(seen) = cup.look(camera, aim, bounces) else {
+        let mut rows = Rows::regular(item);
         let none = Estimate::NONE;
         add_view(&mut rows, none, albedo, none, none)?;
         return rows.finish(None);
     };
     let (x, y) = (seen.x, seen.y);
     let weight = (0..seen.bounces).fold(1.0, |w, _| w * cup.reflectance);
+    let caustic = all_orders(cup, x, y, bounces);
+    let mut rows = Rows::near(item, &caustic);
     let relative = seen.error / cup.wall.radius.max(libm::hypot(x, y));
     add_view(
         &mut rows,
         single(weight, f64::from(seen.bounces)),
         albedo,
         cup.direct(x, y).displaced(relative),
-        all_orders(cup, x, y, bounces).displaced(relative),
+        caustic.displaced(relative),
     )?;
     rows.finish(cup.distance_to_fold(x, y, bounces))
 }
@@ -201,7 +203,7 @@ fn flatland(c: &Object<'_>, p: &Object<'_>) -> Result<Vec<Item>, Error> {
                 irradiances.push(single(e, irradiance.conditioning()));
             });
             let expected = point.objects("roots")?;
-            let mut rows = Rows::new(point, true);
+            let mut rows = Rows::near(point, &fluence);
             rows.add("fluence_caustic", fluence)?;
             rows.add("E_caustic", irradiance)?;
             rows.add_roots("roots", "fluence", &fluences, &expected)?;

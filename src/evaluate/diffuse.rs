@@ -32,7 +32,7 @@ fn floor_point(p: &Object<'_>, point: Object<'_>) -> Result<Item, Error> {
     }
     let (intensity, albedo) = (p.positive("I")?, p.fraction("albedo")?);
     let e = direct(light, intensity, point.receiver(0.0)?);
-    let mut rows = Rows::new(point, false);
+    let mut rows = Rows::regular(point);
     rows.add("E_direct", e)?;
     // There is no specular surface: the file's caustic keys hold the direct light.
     rows.add("E_caustic", e)?;
@@ -53,7 +53,7 @@ fn sphere_point(p: &Object<'_>, point: Object<'_>) -> Result<Item, Error> {
     };
     let e_direct = sphere.direct(point.number("c", -1.0, 1.0)?);
     let total = sum(e_direct, sphere.indirect());
-    let mut rows = Rows::new(point, false);
+    let mut rows = Rows::regular(point);
     rows.add("E_direct", e_direct)?;
     rows.add("E_bounce1", sphere.bounce(1))?;
     for key in point.keys().filter(|k| *k != "E_bounce1") {
@@ -89,7 +89,7 @@ fn furnace_point(p: &Object<'_>, point: Object<'_>) -> Result<Item, Error> {
             other => other,
         })?)
     };
-    let mut rows = Rows::new(point, false);
+    let mut rows = Rows::regular(point);
     let l = furnace(emission, albedo, bounces);
     rows.add("L", if emission == 0.0 { single(0.0, 0.0) } else { l })?;
     rows.finish(None)

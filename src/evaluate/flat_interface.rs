@@ -47,7 +47,11 @@ pub fn configuration(c: &Object<'_>) -> Result<Vec<Item>, Error> {
         let point = point.as_item()?;
         let x = point.receiver(water.receiver_z)?;
         let (direct, caustic) = (water.direct(x.x, x.y), water.caustic(x.x, x.y));
-        let mut rows = Rows::new(point, kinked);
+        let mut rows = if kinked {
+            Rows::near(point, &caustic)
+        } else {
+            Rows::regular(point)
+        };
         rows.add("E_direct", direct)?;
         rows.add("E_caustic", caustic)?;
         rows.add("L_caustic", radiance(albedo, caustic))?;
@@ -59,15 +63,21 @@ pub fn configuration(c: &Object<'_>) -> Result<Vec<Item>, Error> {
     let views = c.objects("views")?.into_iter().map(|view| {
         let view = view.as_item()?;
         let (camera, aim) = view.ray()?;
-        let mut rows = Rows::new(view, kinked);
         let none = Estimate::NONE;
         let Some(seen) = water.look(camera, aim) else {
+            let mut rows = Rows::regular(view);
             rows.add("T", none)?;
             add_view(&mut rows, none, albedo, none, none)?;
             return rows.finish(None);
         };
         let x = seen.receiver;
         let relative = seen.error / (x.length() + water.light.length());
+        let caustic = water.caustic(x.x, x.y);
+        let mut rows = if kinked {
+            Rows::near(view, &caustic)
+        } else {
+            Rows::regular(view)
+        };
         let transmittance = if seen.through {
             seen.fresnel
         } else {
@@ -79,7 +89,7 @@ pub fn configuration(c: &Object<'_>) -> Result<Vec<Item>, Error> {
             single(seen.weight, seen.conditioning),
             albedo,
             water.direct(x.x, x.y).displaced(relative),
-            water.caustic(x.x, x.y).displaced(relative),
+            caustic.displaced(relative),
         )?;
         rows.finish(water.distance_to_kink(x.x, x.y).map(f64::abs))
     });

@@ -62,7 +62,7 @@ pub fn configuration(c: &Object<'_>) -> Result<Vec<Item>, Error> {
         let point = point.as_item()?;
         let x = point.receiver(0.0)?;
         let (direct, caustic) = (mirror.direct(x), mirror.caustic(x));
-        let mut rows = Rows::new(point, false);
+        let mut rows = Rows::regular(point);
         rows.add("E_direct", direct)?;
         rows.add("E_caustic", caustic)?;
         rows.add("L_caustic", radiance(albedo, caustic))?;
@@ -79,7 +79,7 @@ pub fn configuration(c: &Object<'_>) -> Result<Vec<Item>, Error> {
     let views = c.objects("views")?.into_iter().map(|view| {
         let view = view.as_item()?;
         let (camera, aim) = view.ray()?;
-        let mut rows = Rows::new(view, false);
+        let mut rows = Rows::regular(view);
         match mirror.look(camera, aim, 0.0) {
             None => {
                 let none = single(0.0, 0.0);

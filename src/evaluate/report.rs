@@ -32,7 +32,9 @@ pub struct Row {
 impl Row {
     /// The relative difference that the conditioning allows near a singularity.
     pub fn allowed_by_conditioning(&self) -> f64 {
-        if self.value == 0.0 {
+        if self.error_bound == f64::INFINITY {
+            f64::INFINITY
+        } else if self.value == 0.0 {
             ZERO
         } else {
             self.error_bound / f64::abs(self.value)
@@ -130,19 +132,27 @@ impl Report {
 /// Collects the rows of one point or view.
 pub struct Rows<'a> {
     item: Object<'a>,
-    has_singularity: bool,
+    near_singularity: bool,
     rows: Vec<Row>,
     roots: Vec<(String, u32)>,
 }
 
 impl<'a> Rows<'a> {
-    /// For a point or view of a scene that has a singularity, or has none.
-    pub fn new(item: Object<'a>, has_singularity: bool) -> Self {
+    /// For a point or view of a scene without a singularity.
+    pub fn regular(item: Object<'a>) -> Self {
         Rows {
             item,
-            has_singularity,
+            near_singularity: false,
             rows: vec![],
             roots: vec![],
+        }
+    }
+
+    /// For a point or view of a scene that has a singularity, with its caustic irradiance there.
+    pub fn near(item: Object<'a>, caustic: &Estimate<f64>) -> Self {
+        Rows {
+            near_singularity: !(caustic.conditioning() <= NEAR_SINGULARITY),
+            ..Self::regular(item)
         }
     }
 
@@ -163,7 +173,7 @@ impl<'a> Rows<'a> {
             value: estimate.value,
             error_bound: estimate.error,
             conditioning,
-            near_singularity: self.has_singularity && !(conditioning <= NEAR_SINGULARITY),
+            near_singularity: self.near_singularity && !(conditioning <= NEAR_SINGULARITY),
             expected,
             relative_difference: None,
         });

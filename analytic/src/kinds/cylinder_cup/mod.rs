@@ -243,8 +243,18 @@ impl<S: Scalar> CylinderCup<S> {
         match &self.light {
             Light::Beam(beam) => {
                 let mut sum = Estimate::NONE;
-                if !self.shades_beam(beam, x, y) {
-                    sum.add(beam.irradiance * beam.sin_elevation, S::ZERO);
+                let e = beam.irradiance * beam.sin_elevation;
+                let dark = self.shades_beam(beam, x, y);
+                if !dark {
+                    sum.add(e, S::ZERO);
+                }
+                let margin = rounding_error(self.wall.radius.max(x.hypot(y)), S::ZERO);
+                let other = [-margin, margin].into_iter().any(|d| {
+                    self.shades_beam(beam, x + d, y) != dark
+                        || self.shades_beam(beam, x, y + d) != dark
+                });
+                if other {
+                    sum.error += e;
                 }
                 sum
             }
