@@ -5,6 +5,11 @@
 
 pub mod camera;
 pub mod class;
+mod double_double;
+pub mod kinds;
+pub mod optics;
+pub mod quadrature;
+pub mod roots;
 pub mod scalar;
 pub mod scene;
 mod validate;
