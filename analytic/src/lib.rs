@@ -5,6 +5,7 @@
 
 pub mod camera;
 pub mod class;
+pub mod pixel;
 pub mod scalar;
 pub mod scene;
 mod validate;

@@ -4,6 +4,7 @@
 //! path classes it samples, with which technique, and which are irregular for it and thus regularized. Then it is
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
+pub mod accumulate;
 mod camera_paths;
 pub mod kernel;
 mod lt;

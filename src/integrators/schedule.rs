@@ -1,5 +1,8 @@
 //! Bandwidths over iterations, in the simple forms: fixed, a list, or the recursion of progressive photon mapping.
 
+use core::fmt;
+use core::str::FromStr;
+
 use libm::{exp, sqrt};
 
 /// The default of the recursion's parameter.
@@ -21,7 +24,63 @@ pub enum Schedule {
     },
 }
 
+/// What can be written, for messages.
+pub const ALLOWED: &str =
+    "a number, a list such as 0.3,0.2,0.1, or ppm(R1,A) with A greater than 0, less than 1";
+
+impl FromStr for Schedule {
+    type Err = String;
+
+    /// Reads what [`fmt::Display`] writes. Values must be finite and positive.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |t: &str| {
+            t.trim()
+                .parse()
+                .ok()
+                .filter(|v: &f64| *v > 0.0 && v.is_finite())
+        };
+        let numbers = |t: &str| t.split(',').map(number).collect::<Option<Vec<f64>>>();
+        let text = text.trim();
+        let inner = text.strip_prefix("ppm(").and_then(|t| t.strip_suffix(')'));
+        let schedule = match inner {
+            Some(inner) => match numbers(inner).as_deref() {
+                Some(&[first, reduction]) if reduction < 1.0 => {
+                    Some(Schedule::Progressive { first, reduction })
+                }
+                _ => None,
+            },
+            None => match numbers(text) {
+                Some(values) if values.len() == 1 => Some(Schedule::Fixed(values[0])),
+                values => values.map(Schedule::List),
+            },
+        };
+        schedule.ok_or_else(|| ALLOWED.to_owned())
+    }
+}
+
+impl fmt::Display for Schedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Schedule::Fixed(value) => write!(f, "{value}"),
+            Schedule::List(values) => {
+                let values: Vec<_> = values.iter().map(f64::to_string).collect();
+                f.write_str(&values.join(","))
+            }
+            Schedule::Progressive { first, reduction } => write!(f, "ppm({first},{reduction})"),
+        }
+    }
+}
+
 impl Schedule {
+    /// The bandwidths that are named, of which none is exceeded.
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Schedule::Fixed(value) => core::slice::from_ref(value),
+            Schedule::List(values) => values,
+            Schedule::Progressive { first, .. } => core::slice::from_ref(first),
+        }
+    }
+
     /// The bandwidth of an iteration.
     pub fn bandwidth(&self, iteration: u32) -> f64 {
         match self {
@@ -88,6 +147,29 @@ mod tests {
         let limit = 0.04 * libm::pow(n, a - 1.0) / libm::tgamma(1.0 + a);
         let r = schedule.bandwidth(4_000_000_000 - 1);
         assert!((r * r / limit - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_written_can_be_read_and_the_rest_is_refused() {
+        for text in ["0.2", "0.3,0.2,0.1", "ppm(0.2,0.5)"] {
+            assert_eq!(text.parse::<Schedule>().unwrap().to_string(), text);
+        }
+        for text in [
+            "",
+            "x",
+            "0.2,",
+            "-1",
+            "0",
+            "inf",
+            "nan",
+            "ppm(0.2)",
+            "ppm(0.2,1)",
+            "ppm(0.2,0.5",
+            "ppm(1,2,3)",
+            "pow(1)",
+        ] {
+            assert_eq!(text.parse::<Schedule>(), Err(ALLOWED.to_owned()), "{text}");
+        }
     }
 
     #[test]
