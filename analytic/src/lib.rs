@@ -8,6 +8,7 @@ pub mod class;
 mod double_double;
 pub mod kinds;
 pub mod optics;
+pub mod pixel;
 pub mod quadrature;
 pub mod roots;
 pub mod scalar;

@@ -3,6 +3,8 @@
 mod evaluate;
 mod list;
 mod probe;
+mod render;
+mod run;
 
 use std::process::ExitCode;
 
@@ -28,6 +30,8 @@ enum Command {
     List(list::Args),
     Evaluate(evaluate::Args),
     Probe(probe::Args),
+    Render(render::Args),
+    Run(run::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -38,6 +42,8 @@ pub fn main() -> ExitCode {
         Command::List(args) => list::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Probe(args) => probe::run(&args),
+        Command::Render(args) => render::run(&args),
+        Command::Run(args) => run::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -4,9 +4,33 @@
 //! path classes it samples, with which technique, and which are irregular for it and thus regularized. Then it is
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
+pub mod accumulate;
+mod camera_paths;
+pub mod kernel;
+mod lt;
+mod photon_grid;
+pub mod photon_mapping;
+mod plan;
+mod pm;
+mod ppm;
+mod pt;
+mod pt_reg;
+pub mod schedule;
+mod settings;
+
+pub use kernel::Kernel;
+pub use lt::Lt;
+pub use pm::Pm;
+pub use ppm::Ppm;
+pub use pt::Pt;
+pub use pt_reg::PtReg;
+pub use schedule::Schedule;
+pub use settings::{Fault, Settings};
+
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use crate::error::Error;
 use crate::film::Film;
 
 /// What an integrator does about one path class.
@@ -62,6 +86,12 @@ pub trait Integrator: Send + Sync {
     /// What the method does about each class of the scene.
     fn plan(&self, entry: &Entry) -> Plan;
 
+    /// The bandwidths that the method uses, iteration by iteration, when it is given one: that one unless it says
+    /// otherwise. [`Prepared::iterate`] is given the bandwidth of its iteration.
+    fn schedule(&self, bandwidth: f64) -> Schedule {
+        Schedule::Fixed(bandwidth)
+    }
+
     /// Compiles a validated scene into what this method must do on it and no more.
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared>;
 }
@@ -71,4 +101,54 @@ pub trait Prepared: Send + Sync {
     /// Adds the contributions of `paths` paths to the film. The same (seed, iteration, paths, bandwidth) gives the same
     /// bits. `bandwidth` is an angle [rad] or a radius [m], ignored by methods that regularize nothing.
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
+}
+
+/// Every method, with default settings.
+pub fn all() -> Vec<Box<dyn Integrator>> {
+    NAMES
+        .iter()
+        .filter_map(|name| by_name(name, &Settings::default()).ok())
+        .collect()
+}
+
+/// The names of the methods, in the order in which they are listed.
+pub const NAMES: [&str; 5] = ["pt", "pt-reg", "lt", "pm", "ppm"];
+
+/// The method of a name.
+///
+/// # Errors
+/// [`Error::UnknownName`] if there is none, or if the method does not take the kernel.
+pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, Error> {
+    let settings = *settings;
+    let takes = |allowed: fn(Kernel) -> bool, names: &str| match settings.kernel {
+        Some(kernel) if !allowed(kernel) => Err(Error::UnknownName {
+            what: "kernel of this integrator",
+            found: kernel.to_string(),
+            allowed: names.to_owned(),
+        }),
+        _ => Ok(()),
+    };
+    Ok(match name {
+        "pt" => Box::new(Pt::new(settings)),
+        "lt" => Box::new(Lt::new(settings)),
+        "pt-reg" => {
+            takes(Kernel::is_angular, "cone, epanechnikov, vmf")?;
+            Box::new(PtReg::new(settings))
+        }
+        "pm" => {
+            takes(Kernel::is_planar, "disc, epanechnikov")?;
+            Box::new(Pm::new(settings))
+        }
+        "ppm" => {
+            takes(Kernel::is_planar, "disc, epanechnikov")?;
+            Box::new(Ppm::new(settings))
+        }
+        _ => {
+            return Err(Error::UnknownName {
+                what: "integrator",
+                found: name.to_owned(),
+                allowed: NAMES.join(", "),
+            });
+        }
+    })
 }
