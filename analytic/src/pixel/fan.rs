@@ -4,21 +4,30 @@
 //! a straight line on the film. So within such a slice everything is one-dimensional: horizontal distance r from the foot of
 //! the pinhole. What remains is an integral over the azimuth, analytic between break points.
 
-use core::f64::consts::PI;
-
 use libm::{atan2, cos, hypot, sin};
 
 use crate::camera::Bounded;
 use crate::pixel::floor_polygon::{Edge, FloorPolygon};
 use crate::pixel::line::Line;
 
+/// How a slice's integral behaves on approach to a break point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Singularity {
+    /// Analytic up to the break point, from either side.
+    Kink = 1,
+    /// Like a square root: a slice touches a border, or a fold reaches the border of what is seen.
+    Root = 2,
+    /// At worst like a logarithm: a slice touches a fold.
+    Logarithm = 4,
+}
+
 /// An azimuth at which the slice's integral is not analytic.
 #[derive(Clone, Copy, Debug)]
 pub struct Break {
     /// Azimuth, relative to the fan's axis [rad].
     pub azimuth: f64,
-    /// Whether the integral behaves like a square root there (a tangency, or the end of a fold), not just a kink.
-    pub root: bool,
+    /// Behaviour there.
+    pub kind: Singularity,
 }
 
 /// The range of azimuths of a footprint.
@@ -46,7 +55,7 @@ impl Fan {
                 let azimuth = fan.azimuth(*c);
                 fan.breaks.push(Break {
                     azimuth,
-                    root: false,
+                    kind: Singularity::Kink,
                 });
             }
         }
@@ -81,12 +90,12 @@ impl Fan {
     }
 
     /// Adds the azimuths of points where the integral may not be analytic, if they are in range.
-    pub fn add(&mut self, points: &[[f64; 2]], root: bool) {
+    pub fn add(&mut self, points: &[[f64; 2]], kind: Singularity) {
         let (low, high) = self.range();
         for p in points {
             let azimuth = self.azimuth(*p);
             if azimuth > low && azimuth < high {
-                self.breaks.insert(1, Break { azimuth, root });
+                self.breaks.insert(1, Break { azimuth, kind });
             }
         }
     }
@@ -99,14 +108,16 @@ impl Fan {
         let close = 1e-14 * (high - low);
         breaks.dedup_by(|b, a| {
             let join = b.azimuth - a.azimuth <= close;
-            a.root |= join && b.root;
+            if join {
+                a.kind = a.kind.max(b.kind);
+            }
             join
         });
         breaks
     }
 }
 
-/// ∫ f over [a, b]; where an end is a square root, θ = m - h cos πt takes it away.
+/// ∫ f over [a, b]. Towards a singular end θ = a + L u^p takes the singularity away; with two, each has its half.
 pub fn integrate_between(
     line: &Line,
     a: Break,
@@ -114,18 +125,36 @@ pub fn integrate_between(
     tolerance: f64,
     f: &mut impl FnMut(f64) -> Bounded,
 ) -> Bounded {
-    if !(a.root || b.root) {
+    use Singularity::Kink;
+    if a.kind == Kink && b.kind == Kink {
         return line.integrate(a.azimuth, b.azimuth, tolerance, f);
     }
-    let (m, h) = (0.5 * (a.azimuth + b.azimuth), 0.5 * (b.azimuth - a.azimuth));
-    line.integrate(0.0, 1.0, tolerance, &mut |t| {
-        let weight = h * PI * sin(PI * t);
-        let y = f(m - h * cos(PI * t));
-        Bounded {
-            value: weight * y.value,
-            error: weight * y.error,
+    let middle = 0.5 * (a.azimuth + b.azimuth);
+    let (to, from) = match (a.kind, b.kind) {
+        (_, Kink) => (b.azimuth, b.azimuth),
+        (Kink, _) => (a.azimuth, a.azimuth),
+        _ => (middle, middle),
+    };
+    let mut sum = Bounded::default();
+    for (end, inner) in [(a, to), (b, from)] {
+        let length = inner - end.azimuth;
+        if end.kind == Kink || length == 0.0 {
+            continue;
         }
-    })
+        let power = end.kind as i32;
+        let part = line.integrate(0.0, 1.0, 0.5 * tolerance, &mut |u| {
+            let steep = if power == 2 { u } else { u * u * u };
+            let weight = length.abs() * f64::from(power) * steep;
+            let y = f(end.azimuth + length * steep * u);
+            Bounded {
+                value: weight * y.value,
+                error: weight * y.error,
+            }
+        });
+        sum.value += part.value;
+        sum.error += part.error;
+    }
+    sum
 }
 
 /// The points where a circle meets the lines of a polygon's edges, as far as they are near the polygon.

@@ -12,7 +12,7 @@ pub struct Line {
 impl Default for Line {
     fn default() -> Self {
         Line {
-            rules: [4, 6, 9, 13].map(Rule::gauss).into(),
+            rules: [4, 6, 9, 13, 18].map(Rule::gauss).into(),
         }
     }
 }

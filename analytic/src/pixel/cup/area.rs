@@ -10,7 +10,7 @@
 
 use crate::camera::Bounded;
 use crate::pixel::cup::CupImage;
-use crate::pixel::fan::{Fan, circle_crossings, integrate_between};
+use crate::pixel::fan::{Fan, Singularity, circle_crossings, integrate_between};
 use crate::pixel::floor_polygon::{FloorPolygon, clip};
 
 impl CupImage {
@@ -188,7 +188,7 @@ impl CupImage {
         let (rim, rim_radius) = self.rim();
         circle_crossings([0.0, 0.0], self.radius, piece, &mut points);
         circle_crossings(rim, rim_radius, piece, &mut points);
-        fan.add(&points, false);
+        fan.add(&points, Singularity::Kink);
     }
 
     /// Break points of the shadow's outline, and of its crossings with the wall's.
@@ -219,7 +219,7 @@ impl CupImage {
                 points.push([self.reach + along * dx - half * dy, along * dy + half * dx]);
             }
         }
-        fan.add(&points, false);
+        fan.add(&points, Singularity::Kink);
         // Slices that touch the shadow's far border.
         let from = [
             self.projection.nadir[0] - self.reach,
@@ -235,7 +235,7 @@ impl CupImage {
                     k * from[1] + sign * half * from[0],
                 ]
             };
-            fan.add(&[touch(1.0), touch(-1.0)], true);
+            fan.add(&[touch(1.0), touch(-1.0)], Singularity::Root);
         }
     }
 

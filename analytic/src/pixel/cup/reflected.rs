@@ -12,11 +12,13 @@
 //! of trigonometric polynomials. The outer integral over the azimuth is analytic except where a fold, the end of the
 //! light's reach or an end of the arc crosses the border of what is seen, and where the line touches a fold.
 
+use libm::{atan2, cos, exp, log, sin};
+
 use crate::camera::Bounded;
 use crate::pixel::cup::CupImage;
 use crate::pixel::cup::area::WallSlice;
 use crate::pixel::cup::caustic::angles;
-use crate::pixel::fan::{Break, Fan, integrate_between};
+use crate::pixel::fan::{Break, Fan, Singularity, integrate_between};
 use crate::pixel::floor_polygon::FloorPolygon;
 use crate::pixel::quartic::{Few, Trigonometric};
 
@@ -93,7 +95,7 @@ impl CupImage {
                     let same = |x: f64| kind(&probe(x)) == kind(left);
                     breaks.push(Break {
                         azimuth: last_true(at(k - 1), at(k), same),
-                        root: true,
+                        kind: Singularity::Root,
                     });
                     continue;
                 }
@@ -102,11 +104,14 @@ impl CupImage {
                 };
                 for f in 0..FUNCTIONS {
                     let value = |x: f64| probe(x).map_or(f64::NAN, |p| p.values[f]);
-                    let root = f % 4 == 0;
+                    let kind = match f % 4 {
+                        0 => Singularity::Root,
+                        _ => Singularity::Kink,
+                    };
                     if (p.values[f] > 0.0) != (q.values[f] > 0.0) {
                         let same = |x: f64| (value(x) > 0.0) == (p.values[f] > 0.0);
                         let azimuth = last_true(at(k - 1), at(k), same);
-                        breaks.push(Break { azimuth, root });
+                        breaks.push(Break { azimuth, kind });
                     } else if let Some(Some(o)) = k.checked_sub(2).map(|j| samples[j]) {
                         // Three samples of one sign with the smallest in the middle: a hidden pair of roots?
                         let v = [o.values[f], p.values[f], q.values[f]].map(f64::abs);
@@ -117,7 +122,7 @@ impl CupImage {
                             if sign * value(low) < 0.0 {
                                 let left = last_true(at(k - 2), low, |x| sign * value(x) > 0.0);
                                 let right = last_true(low, at(k), |x| sign * value(x) <= 0.0);
-                                breaks.extend([left, right].map(|azimuth| Break { azimuth, root }));
+                                breaks.extend([left, right].map(|azimuth| Break { azimuth, kind }));
                             }
                         }
                     }
@@ -172,7 +177,7 @@ impl CupImage {
                     let azimuth = last_true(pair[0], pair[1], |x| structure(x) == left);
                     let middle = Break {
                         azimuth,
-                        root: true,
+                        kind: Singularity::Logarithm,
                     };
                     let half = 0.5 * tolerance;
                     let left = self.between(piece, fan, a, middle, half, splits - 1);
@@ -255,28 +260,77 @@ impl CupImage {
         let (cuts, _) = self.events(slice);
         let strength = self.direct * self.reflectance * self.reflectance * self.radius;
         let nadir = self.projection.nadir;
-        let mut integrand = |t: f64| {
-            let ([c, _], _, dphi) = angles(t);
-            let (inverse, s, _) = self.crossing(slice, t);
-            let r = slice.foot + s;
+        // cos φ, and the film's weight where line φ crosses.
+        let weight = |c: f64, along: f64| {
+            let r = slice.foot + along;
             let depth = self
                 .projection
                 .depth([nadir[0] + r * e[0], nadir[1] + r * e[1]]);
-            Bounded {
-                value: strength * c * dphi * inverse * r * self.projection.density(depth),
-                error: 0.0,
-            }
+            strength * c * r * self.projection.density(depth)
         };
         let mut sum = Bounded::default();
         for pair in cuts.as_slice().windows(2) {
             let (low, high) = (pair[0].0, pair[1].0);
-            if self.crosses(slice, 0.5 * (low + high)) {
-                let part = self.line.integrate(low, high, tolerance, &mut integrand);
-                sum.value += part.value;
-                sum.error += part.error;
+            if !self.crosses(slice, 0.5 * (low + high)) {
+                continue;
             }
+            let (steep, steeper) = (self.crossing(slice, low).0, self.crossing(slice, high).0);
+            let part = if steep.max(steeper) < 2.0 * steep.min(steeper) {
+                let mut integrand = |t: f64| {
+                    let ([c, _], _, dphi) = angles(t);
+                    let (inverse, along, _) = self.crossing(slice, t);
+                    Bounded {
+                        value: dphi * inverse * weight(c, along),
+                        error: 0.0,
+                    }
+                };
+                self.line.integrate(low, high, tolerance, &mut integrand)
+            } else {
+                self.near_parallel(slice, [low, high], tolerance, weight)
+            };
+            sum.value += part.value;
+            sum.error += part.error;
         }
         sum
+    }
+
+    /// The same near the φ₀ whose line is parallel to the slice's: 1/|sin 2(φ - φ₀)| is the derivative of ½ ln |tan(φ - φ₀)|,
+    /// which becomes the variable.
+    fn near_parallel(
+        &self,
+        slice: &WallSlice,
+        [low, high]: [f64; 2],
+        tolerance: f64,
+        weight: impl Fn(f64, f64) -> f64,
+    ) -> Bounded {
+        let d = slice.along;
+        let phi0 = 0.5 * atan2(d[1], d[0]);
+        let (c0, s0) = (cos(phi0), sin(phi0));
+        let tangent = |t: f64| {
+            let ([c, s], _, _) = angles(t);
+            (s * c0 - c * s0) / (c * c0 + s * s0)
+        };
+        let ends = [tangent(low), tangent(high)];
+        let side = (ends[0] + ends[1]).signum();
+        let [y0, y1] = ends.map(|x| 0.5 * log(x.abs()));
+        if !(y0.is_finite() && y1.is_finite()) {
+            return Bounded::default();
+        }
+        let mut integrand = |y: f64| {
+            let tan = side * exp(2.0 * y);
+            let cx = 1.0 / (1.0 + tan * tan).sqrt();
+            let sx = tan * cx;
+            let (c, s) = (c0 * cx - s0 * sx, s0 * cx + c0 * sx);
+            // φ and φ + π are the same line of directions, but not the same wall point.
+            let (c, s) = if c < 0.0 { (-c, -s) } else { (c, s) };
+            let (_, along, _) = self.crossing(slice, s / (1.0 + c));
+            Bounded {
+                value: weight(c, along),
+                error: 0.0,
+            }
+        };
+        self.line
+            .integrate(y0.min(y1), y0.max(y1), tolerance, &mut integrand)
     }
 }
 
