@@ -103,18 +103,25 @@ impl Fan {
     /// The break points in order, neighbours closer than rounding joined.
     pub fn sorted(&self) -> Vec<Break> {
         let mut breaks = self.breaks.clone();
-        breaks.sort_by(|a, b| a.azimuth.total_cmp(&b.azimuth));
-        let (low, high) = self.range();
-        let close = 1e-14 * (high - low);
-        breaks.dedup_by(|b, a| {
-            let join = b.azimuth - a.azimuth <= close;
-            if join {
-                a.kind = a.kind.max(b.kind);
-            }
-            join
-        });
+        sort(&mut breaks);
         breaks
     }
+}
+
+/// Sorts break points and joins neighbours that rounding cannot tell apart.
+pub fn sort(breaks: &mut Vec<Break>) {
+    breaks.sort_by(|a, b| a.azimuth.total_cmp(&b.azimuth));
+    let range = match (breaks.first(), breaks.last()) {
+        (Some(a), Some(b)) => b.azimuth - a.azimuth,
+        _ => 0.0,
+    };
+    breaks.dedup_by(|b, a| {
+        let join = b.azimuth - a.azimuth <= 1e-13 * range;
+        if join {
+            a.kind = a.kind.max(b.kind);
+        }
+        join
+    });
 }
 
 /// ∫ f over [a, b]. Towards a singular end θ = a + L u^p takes the singularity away; with two, each has its half.

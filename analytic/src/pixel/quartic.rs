@@ -43,9 +43,21 @@ impl Few {
         &self.items[..self.len]
     }
 
-    /// Sorts by value.
+    /// Sorts by value and joins neighbours that rounding cannot tell apart; the smaller label stays.
     pub fn sort(&mut self) {
+        const CLOSE: f64 = 1e-13;
         self.items[..self.len].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut kept = 0;
+        for k in 1..self.len {
+            let (value, label) = self.items[k];
+            if value - self.items[kept].0 <= CLOSE {
+                self.items[kept].1 = self.items[kept].1.min(label);
+            } else {
+                kept += 1;
+                self.items[kept] = (value, label);
+            }
+        }
+        self.len = self.len.min(kept + 1);
     }
 }
 

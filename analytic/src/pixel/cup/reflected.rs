@@ -18,7 +18,7 @@ use crate::camera::Bounded;
 use crate::pixel::cup::CupImage;
 use crate::pixel::cup::area::WallSlice;
 use crate::pixel::cup::caustic::angles;
-use crate::pixel::fan::{Break, Fan, Singularity, integrate_between};
+use crate::pixel::fan::{Break, Fan, Singularity, integrate_between, sort};
 use crate::pixel::floor_polygon::FloorPolygon;
 use crate::pixel::quartic::{Few, Trigonometric};
 
@@ -129,7 +129,7 @@ impl CupImage {
                 }
             }
         }
-        breaks.sort_by(|a, b| a.azimuth.total_cmp(&b.azimuth));
+        sort(&mut breaks);
         breaks
     }
 
