@@ -23,8 +23,9 @@ const DEEPEST: u32 = 40;
 impl Line {
     /// ∫ f over [a, b] to an absolute tolerance.
     ///
-    /// The order is raised until two neighbours agree, then the interval is halved. The error is the difference of the last
-    /// two orders on each piece, plus rounding, plus the integrand's own bound: the value of `f` carries one.
+    /// The order is raised until two neighbours agree, to the tolerance or to the integrand's own error bound, which the
+    /// value of `f` carries; then the interval is halved. The error is the difference of the last two orders on each piece,
+    /// plus rounding, plus the integrand's own.
     pub fn integrate(
         &self,
         a: f64,
@@ -63,7 +64,7 @@ impl Line {
                 value,
                 error: own + difference,
             };
-            if difference <= tolerance.max(32.0 * f64::EPSILON * value.abs()) {
+            if difference <= tolerance.max(2.0 * own) {
                 return result;
             }
             before = value;

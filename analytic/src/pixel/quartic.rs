@@ -98,13 +98,56 @@ impl Trigonometric {
     /// Appends all roots t in (-limit, limit), with a label.
     pub fn roots(&self, limit: f64, label: u8, out: &mut Few) {
         let q = self.quartic();
-        let (roots, count) = roots_between(&q, -limit, limit);
+        let (roots, count) = match sign_changes(&q, limit) {
+            0 => return,
+            1 => {
+                let slope = [q[1], 2.0 * q[2], 3.0 * q[3], 4.0 * q[4]];
+                let falling = value(&q, -limit) > 0.0;
+                let root = bracketed(&q, &slope, -limit, limit, falling);
+                ([root, 0.0, 0.0, 0.0, 0.0], 1)
+            }
+            _ => roots_between(&q, -limit, limit),
+        };
         roots[..count].iter().for_each(|&t| out.push(t, label));
     }
 }
 
 fn value(p: &[f64], x: f64) -> f64 {
     p.iter().rev().fold(0.0, |sum, &c| sum * x + c)
+}
+
+/// Sign changes of the Bernstein coefficients on [-limit, limit]. Descartes' rule: none means no root inside, one means
+/// one root.
+fn sign_changes(q: &[f64; 5], limit: f64) -> usize {
+    // Coefficients of 1, x, x², x³, x⁴ on [-1, 1] in Bernstein's basis of degree 4.
+    const BERNSTEIN: [[f64; 5]; 5] = [
+        [1.0, -1.0, 1.0, -1.0, 1.0],
+        [1.0, -0.5, 0.0, 0.5, -1.0],
+        [1.0, 0.0, -1.0 / 3.0, 0.0, 1.0],
+        [1.0, 0.5, 0.0, -0.5, -1.0],
+        [1.0, 1.0, 1.0, 1.0, 1.0],
+    ];
+    let mut scaled = *q;
+    let mut power = 1.0;
+    for c in &mut scaled {
+        *c *= power;
+        power *= limit;
+    }
+    let mut changes = 0;
+    let mut last = 0.0;
+    for row in BERNSTEIN {
+        let mut b = 0.0;
+        for (m, c) in row.iter().zip(&scaled) {
+            b += m * c;
+        }
+        if b * last < 0.0 {
+            changes += 1;
+        }
+        if b != 0.0 {
+            last = b.signum();
+        }
+    }
+    changes
 }
 
 /// All roots of a quartic in the open interval, ascending.

@@ -20,10 +20,12 @@ use crate::pixel::cup::area::WallSlice;
 use crate::pixel::cup::caustic::angles;
 use crate::pixel::fan::{Break, Fan, Singularity, integrate_between, sort};
 use crate::pixel::floor_polygon::FloorPolygon;
-use crate::pixel::quartic::{Few, Trigonometric};
+use crate::pixel::quartic::Few;
 
 /// Functions whose sign changes on the border of what is seen are events: five at either end.
 const FUNCTIONS: usize = 8;
+/// Rounding of an angle, and of the sine of one.
+const ROUNDING: f64 = 4e-16;
 /// Samples of them per interval.
 const SAMPLES: usize = 9;
 
@@ -170,7 +172,7 @@ impl CupImage {
             slice.map_or(0, |s| self.events(&s).1)
         };
         if splits > 0 {
-            let at = [0.03, 0.26, 0.5, 0.74, 0.97].map(|x| a.azimuth + length * x);
+            let at = [0.02, 0.5, 0.98].map(|x| a.azimuth + length * x);
             for pair in at.windows(2) {
                 let left = structure(pair[0]);
                 if left != structure(pair[1]) {
@@ -198,7 +200,7 @@ impl CupImage {
         integrate_between(&self.line, a, b, tolerance, &mut slice)
     }
 
-    /// All φ at which the set of light lines that cross the visible part of a slice may change, and a number that stands
+    /// All t at which the set of light lines that cross the visible part of a slice may change, and a number that stands
     /// for the structure: which events bound the intervals that do.
     fn events(&self, slice: &WallSlice) -> (Few, u64) {
         let d = slice.along;
@@ -207,20 +209,31 @@ impl CupImage {
         let mut cuts = Few::default();
         cuts.push(-self.limit, 1);
         cuts.push(self.limit, 1);
-        let parallel = Trigonometric {
-            sin2: m[1],
-            cos2: m[0],
-            ..Trigonometric::default()
-        };
-        let equations = [
-            (self.lines_through(slice.point(slice.range[0])), 2),
-            (self.lines_through(slice.point(slice.range[1])), 3),
-            (self.ends_on(m, k), 4),
-            (self.feet_on(m, k), 5),
-            (parallel, 6),
+        for (x, label) in [
+            (slice.point(slice.range[0]), 2),
+            (slice.point(slice.range[1]), 3),
+        ] {
+            self.lines_through(x).roots(self.limit, label, &mut cuts);
+        }
+        self.ends_on(m, k).roots(self.limit, 4, &mut cuts);
+        // Where the slice's line meets the circle: at the wall point itself, and at the other end of the chord.
+        let chord = -2.0 * (slice.wall[0] * d[0] + slice.wall[1] * d[1]);
+        let other = slice.point(chord);
+        // e^{2iφ} = ±d: half angles with positive cosine.
+        let half = [
+            (0.5 * (1.0 + d[0])).max(0.0).sqrt(),
+            (0.5 * (1.0 - d[0])).max(0.0).sqrt(),
         ];
-        for (equation, label) in equations {
-            equation.roots(self.limit, label, &mut cuts);
+        let sign = if d[1] < 0.0 { -1.0 } else { 1.0 };
+        for (t, label) in [
+            (slice.wall[1] / (self.radius + slice.wall[0]), 5),
+            (other[1] / (self.radius + other[0]), 5),
+            (sign * half[1] / (1.0 + half[0]), 6),
+            (-sign * half[0] / (1.0 + half[1]), 6),
+        ] {
+            if t.abs() < self.limit {
+                cuts.push(t, label);
+            }
         }
         cuts.sort();
         let mut structure = 7;
@@ -274,14 +287,19 @@ impl CupImage {
             if !self.crosses(slice, 0.5 * (low + high)) {
                 continue;
             }
-            let (steep, steeper) = (self.crossing(slice, low).0, self.crossing(slice, high).0);
+            let (steep, along, _) = self.crossing(slice, low);
+            let (steeper, further, _) = self.crossing(slice, high);
+            // The ends themselves are known to rounding.
+            sum.error +=
+                ROUNDING * (steep * weight(1.0, along) + steeper * weight(1.0, further)).abs();
             let part = if steep.max(steeper) < 2.0 * steep.min(steeper) {
                 let mut integrand = |t: f64| {
                     let ([c, _], _, dphi) = angles(t);
                     let (inverse, along, _) = self.crossing(slice, t);
+                    let value = dphi * inverse * weight(c, along);
                     Bounded {
-                        value: dphi * inverse * weight(c, along),
-                        error: 0.0,
+                        value,
+                        error: ROUNDING * inverse * value.abs(),
                     }
                 };
                 self.line.integrate(low, high, tolerance, &mut integrand)
@@ -323,10 +341,11 @@ impl CupImage {
             let (c, s) = (c0 * cx - s0 * sx, s0 * cx + c0 * sx);
             // φ and φ + π are the same line of directions, but not the same wall point.
             let (c, s) = if c < 0.0 { (-c, -s) } else { (c, s) };
-            let (_, along, _) = self.crossing(slice, s / (1.0 + c));
+            let (inverse, along, _) = self.crossing(slice, s / (1.0 + c));
+            let value = weight(c, along);
             Bounded {
-                value: weight(c, along),
-                error: 0.0,
+                value,
+                error: ROUNDING * inverse * value.abs(),
             }
         };
         self.line
