@@ -3,15 +3,21 @@
 //! A pixel's value is never a point sample. Planar scenes are clipped into smooth polygons ([`planar`]); scenes with
 //! curved film edges go by scan lines between exact events.
 
+mod cup;
+mod fan;
+mod floor_polygon;
+mod line;
 pub mod planar;
 mod planar_image;
 pub mod polygon;
+mod quartic;
 pub mod rule;
 
 use crate::camera::Bounded;
 use crate::class::PathClass;
 use crate::scene::{Entry, InvalidParameter};
 
+use cup::CupImage;
 use planar_image::PlanarImage;
 
 /// The exact image of an entry, a row at a time.
@@ -25,6 +31,7 @@ pub struct PixelTruth {
 #[derive(Clone, Debug)]
 enum Image {
     Planar(PlanarImage),
+    Cup(CupImage),
 }
 
 impl PixelTruth {
@@ -34,7 +41,9 @@ impl PixelTruth {
     /// The first parameter for which the closed form does not hold.
     pub fn new(entry: &Entry) -> Result<Self, InvalidParameter> {
         entry.validate()?;
-        let image = PlanarImage::new(entry).map(Image::Planar);
+        let image = PlanarImage::new(entry)
+            .map(Image::Planar)
+            .or_else(|| CupImage::new(entry).map(Image::Cup));
         let Some(image) = image else {
             return Err(InvalidParameter {
                 key: "kind".to_owned(),
@@ -61,6 +70,7 @@ impl PixelTruth {
         let mut row = vec![vec![Bounded::default(); self.width as usize]; self.classes.len()];
         match &self.image {
             Image::Planar(image) => image.row(j, tolerance, &mut row),
+            Image::Cup(image) => image.row(j, tolerance, &mut row),
         }
         row
     }
