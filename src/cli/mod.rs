@@ -1,6 +1,8 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod evaluate;
 mod list;
+mod probe;
 mod render;
 
 use std::process::ExitCode;
@@ -25,6 +27,8 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     List(list::Args),
+    Evaluate(evaluate::Args),
+    Probe(probe::Args),
     Render(render::Args),
 }
 
@@ -34,6 +38,8 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Command::List(args) => list::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+        Command::Probe(args) => probe::run(&args),
         Command::Render(args) => render::run(&args),
     };
     match result {
