@@ -5,15 +5,12 @@
 
 pub mod camera;
 pub mod class;
-<<<<<<< HEAD
-pub mod pixel;
-=======
 mod double_double;
 pub mod kinds;
 pub mod optics;
+pub mod pixel;
 pub mod quadrature;
 pub mod roots;
->>>>>>> truth
 pub mod scalar;
 pub mod scene;
 mod validate;
