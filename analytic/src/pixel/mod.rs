@@ -4,12 +4,14 @@
 //! curved film edges go by scan lines between exact events.
 
 mod cup;
+mod events;
 mod fan;
 mod floor_polygon;
 mod line;
 pub mod planar;
 mod planar_image;
 pub mod polygon;
+mod pool;
 mod quartic;
 pub mod rule;
 
@@ -19,6 +21,7 @@ use crate::scene::{Entry, InvalidParameter};
 
 use cup::CupImage;
 use planar_image::PlanarImage;
+use pool::PoolImage;
 
 /// The exact image of an entry, a row at a time.
 #[derive(Clone, Debug)]
@@ -32,6 +35,7 @@ pub struct PixelTruth {
 enum Image {
     Planar(PlanarImage),
     Cup(CupImage),
+    Pool(PoolImage),
 }
 
 impl PixelTruth {
@@ -43,7 +47,8 @@ impl PixelTruth {
         entry.validate()?;
         let image = PlanarImage::new(entry)
             .map(Image::Planar)
-            .or_else(|| CupImage::new(entry).map(Image::Cup));
+            .or_else(|| CupImage::new(entry).map(Image::Cup))
+            .or_else(|| PoolImage::new(entry).map(Image::Pool));
         let Some(image) = image else {
             return Err(InvalidParameter {
                 key: "kind".to_owned(),
@@ -71,6 +76,7 @@ impl PixelTruth {
         match &self.image {
             Image::Planar(image) => image.row(j, tolerance, &mut row),
             Image::Cup(image) => image.row(j, tolerance, &mut row),
+            Image::Pool(image) => image.row(j, tolerance, &mut row),
         }
         row
     }

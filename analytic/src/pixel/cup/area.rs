@@ -10,7 +10,7 @@
 
 use crate::camera::Bounded;
 use crate::pixel::cup::CupImage;
-use crate::pixel::fan::{Fan, Singularity, circle_crossings, integrate_between};
+use crate::pixel::fan::{Break, Fan, Singularity, circle_crossings, integrate_between};
 use crate::pixel::floor_polygon::{FloorPolygon, clip};
 
 impl CupImage {
@@ -263,10 +263,16 @@ impl CupImage {
     }
 
     /// Radiance × film area of the directly lit floor seen in the wall.
-    pub(super) fn floor_in_wall(&self, piece: &FloorPolygon, fan: &Fan, tolerance: f64) -> Bounded {
+    pub(super) fn floor_in_wall(
+        &self,
+        piece: &FloorPolygon,
+        fan: &Fan,
+        breaks: &[Break],
+        tolerance: f64,
+    ) -> Bounded {
         let radiance = self.direct * self.reflectance;
         let mut sum = Bounded::default();
-        for pair in self.wall_breaks(piece, fan, false).windows(2) {
+        for pair in breaks.windows(2) {
             let mut area = |azimuth: f64| {
                 let e = fan.direction(azimuth);
                 let value = self.wall_slice(piece, e).map_or(0.0, |s| {

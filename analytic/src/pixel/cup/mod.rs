@@ -114,10 +114,12 @@ impl CupImage {
                 for piece in self.pieces(&self.reach_on_film, i, j) {
                     let mut fan = Fan::new(self.projection.nadir, &piece);
                     self.add_wall_breaks(&piece, &mut fan);
-                    let direct = self.floor_in_wall(&piece, &fan, once * self.reflectance);
+                    let breaks = self.wall_breaks(&piece, &fan);
+                    let direct = self.floor_in_wall(&piece, &fan, &breaks, once * self.reflectance);
                     let caustic = self.reflected_caustic(
                         &piece,
                         &fan,
+                        &breaks,
                         once * self.reflectance * self.reflectance,
                     );
                     for (sum, part) in [(&mut ldse[k], direct), (&mut lsdse[k], caustic)] {

@@ -18,24 +18,15 @@ use crate::camera::Bounded;
 use crate::pixel::cup::CupImage;
 use crate::pixel::cup::area::WallSlice;
 use crate::pixel::cup::caustic::angles;
+use crate::pixel::events::{Probe, last_true, search};
 use crate::pixel::fan::{Break, Fan, Singularity, integrate_between, sort};
 use crate::pixel::floor_polygon::FloorPolygon;
 use crate::pixel::quartic::Few;
 
-/// Functions whose sign changes on the border of what is seen are events: five at either end.
+/// Functions whose sign changes on the border of what is seen are events: four at either end.
 const FUNCTIONS: usize = 8;
 /// Rounding of an angle, and of the sine of one.
 const ROUNDING: f64 = 4e-16;
-/// Samples of them per interval.
-const SAMPLES: usize = 9;
-
-/// The borders' functions in one slice.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Probe {
-    labels: [u8; 2],
-    values: [f64; FUNCTIONS],
-}
-
 impl CupImage {
     /// Zero on the nephroid (x² + y² - a²/4)³ = 108 (a/4)⁴ y².
     fn nephroid(&self, [x, y]: [f64; 2]) -> f64 {
@@ -60,7 +51,7 @@ impl CupImage {
         (y * c2 - x * s2) / self.radius + s
     }
 
-    fn probe(&self, piece: &FloorPolygon, fan: &Fan, azimuth: f64) -> Option<Probe> {
+    fn probe(&self, piece: &FloorPolygon, fan: &Fan, azimuth: f64) -> Option<Probe<FUNCTIONS>> {
         let s = self.wall_slice(piece, fan.direction(azimuth))?;
         let mut values = [0.0; FUNCTIONS];
         for (k, tau) in s.range.into_iter().enumerate() {
@@ -76,60 +67,21 @@ impl CupImage {
         })
     }
 
-    /// The fan's break points, and those where what cuts the slice changes; with `events`, also where the caustic's
-    /// curves cross the border of what is seen.
-    pub(super) fn wall_breaks(&self, piece: &FloorPolygon, fan: &Fan, events: bool) -> Vec<Break> {
+    /// The fan's break points, and those where what cuts the slice changes or where the caustic's curves cross the border
+    /// of what is seen.
+    pub(super) fn wall_breaks(&self, piece: &FloorPolygon, fan: &Fan) -> Vec<Break> {
         let basic = fan.sorted();
         let mut breaks = basic.clone();
+        let at_end = [
+            Singularity::Root,
+            Singularity::Kink,
+            Singularity::Kink,
+            Singularity::Kink,
+        ];
+        let kinds: [Singularity; FUNCTIONS] = core::array::from_fn(|k| at_end[k % 4]);
         for pair in basic.windows(2) {
-            let (a, b) = (pair[0].azimuth, pair[1].azimuth);
-            // Just inside, where the slice is not cut by both neighbours' borders at once.
-            let at = |k: usize| {
-                let x = (k as f64 + 0.02) / (SAMPLES as f64 - 0.96);
-                a + (b - a) * x
-            };
-            let probe = |azimuth: f64| self.probe(piece, fan, azimuth);
-            let samples: [Option<Probe>; SAMPLES] = core::array::from_fn(|k| probe(at(k)));
-            for k in 1..SAMPLES {
-                let (left, right) = (&samples[k - 1], &samples[k]);
-                let kind = |p: &Option<Probe>| p.map(|p| p.labels);
-                if kind(left) != kind(right) {
-                    let same = |x: f64| kind(&probe(x)) == kind(left);
-                    breaks.push(Break {
-                        azimuth: last_true(at(k - 1), at(k), same),
-                        kind: Singularity::Root,
-                    });
-                    continue;
-                }
-                let (Some(p), Some(q), true) = (left, right, events) else {
-                    continue;
-                };
-                for f in 0..FUNCTIONS {
-                    let value = |x: f64| probe(x).map_or(f64::NAN, |p| p.values[f]);
-                    let kind = match f % 4 {
-                        0 => Singularity::Root,
-                        _ => Singularity::Kink,
-                    };
-                    if (p.values[f] > 0.0) != (q.values[f] > 0.0) {
-                        let same = |x: f64| (value(x) > 0.0) == (p.values[f] > 0.0);
-                        let azimuth = last_true(at(k - 1), at(k), same);
-                        breaks.push(Break { azimuth, kind });
-                    } else if let Some(Some(o)) = k.checked_sub(2).map(|j| samples[j]) {
-                        // Three samples of one sign with the smallest in the middle: a hidden pair of roots?
-                        let v = [o.values[f], p.values[f], q.values[f]].map(f64::abs);
-                        let turns = v[1] <= v[0] && v[1] <= v[2];
-                        if turns && v[1] < 0.5 * v[0].max(v[2]) && o.labels == p.labels {
-                            let sign = p.values[f].signum();
-                            let low = minimum(at(k - 2), at(k), |x| sign * value(x));
-                            if sign * value(low) < 0.0 {
-                                let left = last_true(at(k - 2), low, |x| sign * value(x) > 0.0);
-                                let right = last_true(low, at(k), |x| sign * value(x) <= 0.0);
-                                breaks.extend([left, right].map(|azimuth| Break { azimuth, kind }));
-                            }
-                        }
-                    }
-                }
-            }
+            let range = (pair[0].azimuth, pair[1].azimuth);
+            search(range, kinds, |x| self.probe(piece, fan, x), &mut breaks);
         }
         sort(&mut breaks);
         breaks
@@ -140,9 +92,9 @@ impl CupImage {
         &self,
         piece: &FloorPolygon,
         fan: &Fan,
+        breaks: &[Break],
         tolerance: f64,
     ) -> Bounded {
-        let breaks = self.wall_breaks(piece, fan, true);
         let share = tolerance / breaks.len() as f64;
         let mut sum = Bounded::default();
         for pair in breaks.windows(2) {
@@ -361,40 +313,4 @@ impl WallSlice {
             self.wall[1] + s * self.along[1],
         ]
     }
-}
-
-/// Bisection: the border between where `same` holds (at `low`) and where it does not (at `high`).
-fn last_true(mut low: f64, mut high: f64, same: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if !(middle > low && middle < high) {
-            break;
-        }
-        if same(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
-}
-
-/// Ternary search for the smallest value, stopped early below zero.
-fn minimum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..40 {
-        let (a, b) = (low + 0.4 * (high - low), low + 0.6 * (high - low));
-        let (fa, fb) = (f(a), f(b));
-        if fa < 0.0 {
-            return a;
-        }
-        if fb < 0.0 {
-            return b;
-        }
-        if fa < fb {
-            high = b;
-        } else {
-            low = a;
-        }
-    }
-    0.5 * (low + high)
 }
