@@ -27,9 +27,9 @@ use super::settings::{Defect, Settings};
 use super::{ClassPlan, Plan, Prepared, Technique, Treatment};
 
 /// Photons that a camera path meets in the nine cells around its vertex, about.
-pub const MET: f64 = 128.0;
+const MET: f64 = 128.0;
 /// Photons traced for a map, at least and at most: powers of two.
-pub const MAP: [u64; 2] = [1 << 12, 1 << 18];
+const MAP: [u64; 2] = [1 << 12, 1 << 18];
 /// Photons traced to find out how dense they lie.
 const PILOT: u64 = 1 << 13;
 
@@ -44,7 +44,8 @@ pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
             treatment: Treatment::Regularized(Technique::Merge),
             reason: format!(
                 "irregular: light and specular vertex are both singular; merged with photons that came through the \
-                 specular surface, {kernel} kernel on the distance on the floor"
+                 specular surface (uniform over the sphere of a point light, over the smallest beam that covers the \
+                 mirror of a directional one), {kernel} kernel on the distance on the floor"
             ),
         })
     })
