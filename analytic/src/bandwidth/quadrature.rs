@@ -45,7 +45,7 @@ pub(super) fn error_of_better(difference: f64, absolute: f64) -> f64 {
 
 /// The same where a kink may be hidden: it takes a much closer agreement before the power 3/2 is trusted (QUADPACK's
 /// constant), and twice the difference before that.
-fn error_with_kinks(difference: f64, absolute: f64) -> f64 {
+pub(super) fn error_with_kinks(difference: f64, absolute: f64) -> f64 {
     2.0 * estimate(difference, absolute, 2828.0)
 }
 
@@ -85,7 +85,7 @@ const KRONROD_NODES: [f64; 8] = [
     0.864_864_423_359_769_1,
     0.741_531_185_599_394_4,
     0.586_087_235_467_691_1,
-    0.405_845_151_377_397_17,
+    0.405_845_151_377_397_2,
     0.207_784_955_007_898_47,
     0.0,
 ];
@@ -102,7 +102,7 @@ const KRONROD_WEIGHTS: [f64; 8] = [
 const GAUSS_WEIGHTS: [f64; 4] = [
     0.129_484_966_168_869_7,
     0.279_705_391_489_276_64,
-    0.381_830_050_505_118_93,
+    0.381_830_050_505_118_9,
     0.417_959_183_673_469_4,
 ];
 
