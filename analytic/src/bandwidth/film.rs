@@ -23,7 +23,7 @@ use crate::pixel::polygon::{ConvexSet, HalfPlane, Polygon};
 use crate::scene::{Entry, InvalidParameter, Kind};
 use crate::vector::Vec3;
 
-/// Splits at most per pixel, and rounds of splits per strip.
+/// Rounds of splits at most, per pixel or strip.
 const ROUNDS: usize = 60;
 
 /// Pixels fainter than this part of the unclipped radiance are computed to an absolute tolerance only.

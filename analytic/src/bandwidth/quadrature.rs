@@ -45,7 +45,7 @@ pub(super) fn error_of_better(difference: f64, absolute: f64) -> f64 {
 
 /// The same where a kink may be hidden: it takes a much closer agreement before the power 3/2 is trusted (QUADPACK's
 /// constant), and twice the difference before that.
-pub(super) fn error_with_kinks(difference: f64, absolute: f64) -> f64 {
+fn error_with_kinks(difference: f64, absolute: f64) -> f64 {
     2.0 * estimate(difference, absolute, 2828.0)
 }
 
