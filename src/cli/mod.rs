@@ -1,6 +1,8 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod evaluate;
 mod list;
+mod probe;
 
 use std::process::ExitCode;
 
@@ -24,6 +26,8 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     List(list::Args),
+    Evaluate(evaluate::Args),
+    Probe(probe::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -32,6 +36,8 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Command::List(args) => list::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+        Command::Probe(args) => probe::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),
