@@ -6,6 +6,7 @@ pub mod error;
 pub mod evaluate;
 pub mod exit;
 pub mod exr_output;
+pub mod expectation;
 pub mod film;
 pub mod geometry;
 pub mod integrators;
