@@ -3,8 +3,10 @@
 //! This crate holds closed forms and exact expectations. It knows nothing of how light is sampled: it never imports an
 //! integrator, a ray tracer or a random number generator, and it does no I/O.
 
+pub mod bandwidth;
 pub mod camera;
 pub mod class;
+pub mod pixel;
 pub mod scalar;
 pub mod scene;
 mod validate;

@@ -1,0 +1,1 @@
+//! Pixels and regions at finite bandwidth.
