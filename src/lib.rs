@@ -6,4 +6,6 @@ pub mod error;
 pub mod exit;
 pub mod film;
 pub mod integrators;
+pub mod judge;
 pub mod output;
+pub mod report;
