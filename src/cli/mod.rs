@@ -1,6 +1,7 @@
 //! The command line: one file per command, each a thin layer over the library.
 
 mod list;
+mod render;
 
 use std::process::ExitCode;
 
@@ -24,6 +25,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     List(list::Args),
+    Render(render::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -32,6 +34,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Command::List(args) => list::run(&args),
+        Command::Render(args) => render::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

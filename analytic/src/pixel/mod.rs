@@ -1,5 +1,67 @@
-//! Pixels: the integral of radiance over a pixel's box, per path class, with an error bound.
+//! Pixels: the mean radiance over a pixel's box, per path class, with an error bound.
+//!
+//! A pixel's value is never a point sample. Planar scenes are clipped into smooth polygons ([`planar`]); scenes with
+//! curved film edges go by scan lines between exact events.
 
 pub mod planar;
+mod planar_image;
 pub mod polygon;
 pub mod rule;
+
+use crate::camera::Bounded;
+use crate::class::PathClass;
+use crate::scene::{Entry, InvalidParameter};
+
+use planar_image::PlanarImage;
+
+/// The exact image of an entry, a row at a time.
+#[derive(Clone, Debug)]
+pub struct PixelTruth {
+    classes: &'static [PathClass],
+    width: u32,
+    image: Image,
+}
+
+#[derive(Clone, Debug)]
+enum Image {
+    Planar(PlanarImage),
+}
+
+impl PixelTruth {
+    /// Validates and prepares an entry.
+    ///
+    /// # Errors
+    /// The first parameter for which the closed form does not hold.
+    pub fn new(entry: &Entry) -> Result<Self, InvalidParameter> {
+        entry.validate()?;
+        let image = PlanarImage::new(entry).map(Image::Planar);
+        let Some(image) = image else {
+            return Err(InvalidParameter {
+                key: "kind".to_owned(),
+                found: entry.kind.name().to_owned(),
+                allowed: "a kind with exact pixels".to_owned(),
+            });
+        };
+        Ok(PixelTruth {
+            classes: entry.kind.classes(),
+            width: entry.camera.width,
+            image,
+        })
+    }
+
+    /// The path classes, in the order of the layers.
+    pub fn classes(&self) -> &'static [PathClass] {
+        self.classes
+    }
+
+    /// Row `j` (0 is the top): `[class][column]`, the mean radiance over the pixel [W m⁻² sr⁻¹] with its absolute error
+    /// bound, to a relative tolerance (clamped to at least 1e-14).
+    pub fn row(&self, j: u32, tolerance: f64) -> Vec<Vec<Bounded>> {
+        let tolerance = tolerance.max(1e-14);
+        let mut row = vec![vec![Bounded::default(); self.width as usize]; self.classes.len()];
+        match &self.image {
+            Image::Planar(image) => image.row(j, tolerance, &mut row),
+        }
+        row
+    }
+}

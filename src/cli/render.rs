@@ -1,0 +1,107 @@
+//! `nephroid render`: the exact image.
+
+use std::path::PathBuf;
+
+use crate::error::Error;
+use crate::exr_output::{metadata, rounded_up, rounding_error, write_exr};
+use crate::png_output::{DISPLAY_TRANSFORM, write_png};
+use crate::truth::{self, DEFAULT_TOLERANCE};
+use crate::{entry, exit};
+
+/// Compute the exact image of a scene: the mean radiance over every pixel, one layer per path class.
+///
+/// The EXR file has a channel `<CLASS>.Y` per path class (f32, W/(m² sr)) and `error.Y`, a bound on the error of the sum
+/// of the layers as stored, f32 rounding included. Attributes: `nephroid:version`, `nephroid:scene`,
+/// `nephroid:parameters`. The same bytes every time.
+#[derive(clap::Args)]
+pub struct Args {
+    /// A name from `nephroid list`, or a TOML file.
+    scene: String,
+    /// The EXR file to write.
+    #[arg(short, long, value_name = "FILE.exr")]
+    output: PathBuf,
+    /// Columns × rows, 1 to 8192 each; the vertical field of view stays. Default: as the scene says.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+    /// Relative tolerance of a pixel's value, 1e-12 to 0.1.
+    #[arg(long, value_name = "T", default_value_t = DEFAULT_TOLERANCE, value_parser = tolerance)]
+    tolerance: f64,
+    #[arg(long, help = format!(
+        "Also write a PNG of the sum beside it. Fixed exposure: {DISPLAY_TRANSFORM}"
+    ))]
+    png: bool,
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |s: &str| s.parse().ok().filter(|n| (1..=8192).contains(n));
+    text.split_once(['x', 'X', '×'])
+        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
+        .ok_or_else(|| "expected WxH with whole numbers from 1 to 8192, such as 256x256".to_owned())
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let allowed = |t: &f64| (1e-12..=0.1).contains(t);
+    text.parse()
+        .ok()
+        .filter(allowed)
+        .ok_or_else(|| "expected a number from 1e-12 to 0.1".to_owned())
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<u8, Error> {
+    let mut entry = entry::load(&args.scene)?;
+    if let Some((width, height)) = args.size {
+        entry.camera.width = width;
+        entry.camera.height = height;
+    }
+    let png = args.output.with_extension("png");
+    if args.png && png == args.output {
+        return Err(Error::Parameter {
+            file: "--output".to_owned(),
+            key: "output".to_owned(),
+            found: args.output.display().to_string(),
+            allowed: "a name that does not end in .png: the PNG goes beside it".to_owned(),
+        });
+    }
+    let image = truth::image(&entry, args.tolerance);
+    let (total, mut error) = image.total();
+    for layer in &image.layers {
+        for (e, &v) in error.iter_mut().zip(layer) {
+            *e += rounding_error(v);
+        }
+    }
+    error.iter_mut().for_each(|e| *e = rounded_up(*e));
+
+    let mut layers: Vec<_> = image
+        .classes
+        .iter()
+        .zip(&image.layers)
+        .map(|(class, layer)| (format!("{class}.Y"), layer.as_slice()))
+        .collect();
+    layers.push(("error.Y".to_owned(), &error));
+    write_exr(
+        &args.output,
+        image.width,
+        image.height,
+        &layers,
+        &metadata(&entry),
+    )?;
+    if args.png {
+        write_png(&png, image.width, image.height, &total)?;
+    }
+    super::print(&format!(
+        "{}: {}×{} pixels, mean radiance in W/(m² sr)",
+        args.output.display(),
+        image.width,
+        image.height
+    ));
+    for (class, mean) in image.classes.iter().zip(image.class_means()) {
+        super::print(&format!(
+            "  {:<6} {:.9e} ± {:.1e}",
+            class.to_string(),
+            mean.value,
+            mean.error
+        ));
+    }
+    Ok(exit::PASS)
+}
