@@ -5,5 +5,7 @@ pub mod entry;
 pub mod error;
 pub mod exit;
 pub mod film;
+pub mod geometry;
 pub mod integrators;
 pub mod output;
+pub mod stream;
