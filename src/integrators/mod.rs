@@ -4,9 +4,24 @@
 //! path classes it samples, with which technique, and which are irregular for it and thus regularized. Then it is
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
+mod camera_paths;
+pub mod kernel;
+mod lt;
+mod plan;
+mod pt;
+mod pt_reg;
+mod settings;
+
+pub use kernel::Kernel;
+pub use lt::Lt;
+pub use pt::Pt;
+pub use pt_reg::PtReg;
+pub use settings::{Fault, Settings};
+
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use crate::error::Error;
 use crate::film::Film;
 
 /// What an integrator does about one path class.
@@ -71,4 +86,46 @@ pub trait Prepared: Send + Sync {
     /// Adds the contributions of `paths` paths to the film. The same (seed, iteration, paths, bandwidth) gives the same
     /// bits. `bandwidth` is an angle [rad] or a radius [m], ignored by methods that regularize nothing.
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
+}
+
+/// Every method, with default settings.
+pub fn all() -> Vec<Box<dyn Integrator>> {
+    NAMES
+        .iter()
+        .filter_map(|name| by_name(name, &Settings::default()).ok())
+        .collect()
+}
+
+/// The names of the methods, in the order in which they are listed.
+pub const NAMES: [&str; 3] = ["pt", "pt-reg", "lt"];
+
+/// The method of a name.
+///
+/// # Errors
+/// [`Error::UnknownName`] if there is none, or if the method does not take the kernel.
+pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, Error> {
+    let settings = *settings;
+    let takes = |allowed: fn(Kernel) -> bool, names: &str| match settings.kernel {
+        Some(kernel) if !allowed(kernel) => Err(Error::UnknownName {
+            what: "kernel of this integrator",
+            found: kernel.to_string(),
+            allowed: names.to_owned(),
+        }),
+        _ => Ok(()),
+    };
+    Ok(match name {
+        "pt" => Box::new(Pt::new(settings)),
+        "lt" => Box::new(Lt::new(settings)),
+        "pt-reg" => {
+            takes(Kernel::is_angular, "cone, epanechnikov, vmf")?;
+            Box::new(PtReg::new(settings))
+        }
+        _ => {
+            return Err(Error::UnknownName {
+                what: "integrator",
+                found: name.to_owned(),
+                allowed: NAMES.join(", "),
+            });
+        }
+    })
 }

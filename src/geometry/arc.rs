@@ -1,0 +1,94 @@
+//! A vertical arc of a circular cylinder standing on the floor: its inner side reflects, its outer side absorbs, both
+//! block.
+//!
+//! A ray enters the full cylinder at the smaller root of |o + t d|² = a² (in plan), where it meets the outer side, and
+//! leaves it at the larger root, where it meets the inner side. The arc is at most 60° to either side of +x, so a point
+//! of the circle belongs to it where x ≥ a cos(half arc). Light and camera are such that no ray meets the inner side
+//! twice (the entry's validation proves it), so nothing is asked again after a reflection.
+
+use glam::DVec3;
+use nephroid_analytic::scene::ArcWall;
+
+use super::specular::{Meeting, Specular, reflected};
+
+/// The wall, ready for rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Arc {
+    radius: f64,
+    height: f64,
+    /// The arc is where x is at least this [m].
+    x_min: f64,
+    half_chord: f64,
+    reflectance: f64,
+}
+
+impl Arc {
+    /// Prepares a validated wall; `reflectance` replaces the scene's own.
+    pub fn new(wall: &ArcWall, reflectance: f64) -> Self {
+        let half_arc = wall.half_arc_degrees.to_radians();
+        Arc {
+            radius: wall.radius,
+            height: wall.height,
+            x_min: wall.radius * libm::cos(half_arc),
+            half_chord: wall.radius * libm::sin(half_arc),
+            reflectance,
+        }
+    }
+
+    /// Ray parameters at the outer and the inner side, infinite where the wall is not met.
+    #[inline(always)]
+    fn crossings(&self, o: DVec3, d: DVec3) -> (f64, f64) {
+        let a = d.x * d.x + d.y * d.y;
+        let b = o.x * d.x + o.y * d.y;
+        let c = o.x * o.x + o.y * o.y - self.radius * self.radius;
+        // NaN, and thus no meeting, where the ray misses the circle or is vertical.
+        let root = f64::sqrt(b * b - a * c);
+        // The root in which nothing cancels, then the other from their product c/a.
+        let q = if b < 0.0 { root - b } else { -(root + b) };
+        let (first, second) = (q / a, c / q);
+        let (outer, inner) = if b < 0.0 {
+            (second, first)
+        } else {
+            (first, second)
+        };
+        let on_wall = |t: f64| {
+            let (x, z) = (o.x + d.x * t, o.z + d.z * t);
+            let met = (t > 0.0) & (x >= self.x_min) & (z >= 0.0) & (z <= self.height);
+            if met { t } else { f64::INFINITY }
+        };
+        (on_wall(outer), on_wall(inner))
+    }
+}
+
+impl Specular for Arc {
+    fn hull(&self) -> Vec<DVec3> {
+        let mut corners = Vec::with_capacity(8);
+        for x in [self.x_min, self.radius] {
+            for y in [-self.half_chord, self.half_chord] {
+                corners.extend([0.0, self.height].map(|z| DVec3::new(x, y, z)));
+            }
+        }
+        corners
+    }
+
+    #[inline(always)]
+    fn meet(&self, origin: DVec3, direction: DVec3) -> Meeting {
+        let (outer, inner) = self.crossings(origin, direction);
+        let reflects = inner < outer;
+        let t = if reflects { inner } else { outer };
+        let point = origin + direction * t;
+        let normal = DVec3::new(point.x, point.y, 0.0) / self.radius;
+        Meeting {
+            t,
+            point,
+            direction: reflected(direction, normal),
+            weight: if reflects { self.reflectance } else { 0.0 },
+        }
+    }
+
+    #[inline(always)]
+    fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
+        let (outer, inner) = self.crossings(origin, direction);
+        (outer < t_end) | (inner < t_end)
+    }
+}

@@ -1,0 +1,87 @@
+//! Lights: what next event estimation and a regularized connection ask of them.
+
+use glam::DVec3;
+
+use super::emission::{Beam, Cap, Emitter};
+
+/// A light that illuminates a point from one direction.
+pub trait Light: Copy + Send + Sync + 'static {
+    /// How photons start.
+    type Emitter: Emitter;
+
+    /// Photons over everything that can reach the convex hull of `targets`, and little else.
+    fn aimed(&self, targets: &[DVec3]) -> Self::Emitter;
+
+    /// Photons with the density of the tables of expectations: over the whole sphere from a point light; over a
+    /// cross-section that covers the targets from a directional one.
+    fn unaimed(&self, targets: &[DVec3]) -> Self::Emitter;
+
+    /// Direction from a point towards the light (not normalised) and the ray parameter of the light along it.
+    fn towards(&self, point: DVec3) -> (DVec3, f64);
+
+    /// Irradiance on a plane perpendicular to the light's direction, at a point from which `towards` gave `direction`
+    /// [W/m²]: I/d² or E₀.
+    fn normal_irradiance(&self, direction: DVec3) -> f64;
+}
+
+/// An isotropic point light.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// Position [m].
+    pub position: DVec3,
+    /// Radiant intensity [W/sr].
+    pub intensity: f64,
+}
+
+impl Light for Point {
+    type Emitter = Cap;
+
+    fn aimed(&self, targets: &[DVec3]) -> Cap {
+        self.towards_hull(targets)
+    }
+
+    fn unaimed(&self, _: &[DVec3]) -> Cap {
+        self.everywhere()
+    }
+
+    #[inline(always)]
+    fn towards(&self, point: DVec3) -> (DVec3, f64) {
+        (self.position - point, 1.0)
+    }
+
+    #[inline(always)]
+    fn normal_irradiance(&self, direction: DVec3) -> f64 {
+        self.intensity / direction.dot(direction)
+    }
+}
+
+/// A directional light.
+#[derive(Clone, Copy, Debug)]
+pub struct Directional {
+    /// Unit direction in which the light travels.
+    pub travel: DVec3,
+    /// Irradiance on a plane perpendicular to the beam [W/m²].
+    pub irradiance: f64,
+}
+
+impl Light for Directional {
+    type Emitter = Beam;
+
+    fn aimed(&self, targets: &[DVec3]) -> Beam {
+        self.towards_hull(targets)
+    }
+
+    fn unaimed(&self, targets: &[DVec3]) -> Beam {
+        self.towards_hull(targets)
+    }
+
+    #[inline(always)]
+    fn towards(&self, _: DVec3) -> (DVec3, f64) {
+        (-self.travel, f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn normal_irradiance(&self, _: DVec3) -> f64 {
+        self.irradiance
+    }
+}

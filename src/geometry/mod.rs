@@ -1,0 +1,17 @@
+//! The scene as integrators see it: rays, surfaces, lights and the pinhole.
+//!
+//! Derived from the plain scene data alone, and independent of the closed forms: nothing here calls the truth's camera,
+//! optics or formulas, so an error on one side cannot hide on the other. Every function that runs per path is
+//! branch-free (values first, selects last), so that a loop over a block of paths becomes vector code; results do not
+//! depend on the width of the vectors.
+
+pub mod arc;
+pub mod emission;
+pub mod floor;
+pub mod light;
+pub mod pinhole;
+pub mod rectangle;
+pub mod scene;
+pub mod specular;
+pub mod turn;
+pub mod water;

@@ -1,0 +1,137 @@
+//! A scene compiled for rays, and the one step that all methods share: where a ray reaches the floor, with at most one
+//! specular interaction on the way.
+
+use glam::DVec3;
+use nephroid_analytic::scene::{Entry, Kind};
+
+use super::arc::Arc;
+use super::floor::Floor;
+use super::light::{Directional, Light, Point};
+use super::pinhole::Pinhole;
+use super::rectangle::Rectangle;
+use super::specular::{Nothing, Specular};
+use super::water::Water;
+
+/// A scene with its light and specular surface known at compile time.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<L, S> {
+    /// The light.
+    pub light: L,
+    /// The specular surface.
+    pub surface: S,
+    /// The receiver.
+    pub floor: Floor,
+    /// The camera.
+    pub camera: Pinhole,
+}
+
+/// A scene of any of the kinds.
+pub enum Compiled {
+    /// No specular surface.
+    Diffuse(Scene<Point, Nothing>),
+    /// Flat mirror.
+    PlanarMirror(Scene<Point, Rectangle>),
+    /// Vertical arc under a directional light.
+    CylinderCup(Scene<Directional, Arc>),
+    /// Flat water.
+    FlatInterface(Scene<Point, Water>),
+}
+
+/// Replacements of scene constants, for deliberately wrong integrators.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overrides {
+    /// Intensity or irradiance of the light.
+    pub light_strength: Option<f64>,
+    /// Reflectance of the mirror.
+    pub reflectance: Option<f64>,
+}
+
+impl Compiled {
+    /// Compiles a validated entry.
+    pub fn new(entry: &Entry, overrides: Overrides) -> Self {
+        let floor = Floor::new(entry.kind.floor());
+        let camera = Pinhole::new(&entry.camera);
+        let point = |light: &nephroid_analytic::scene::PointLight| Point {
+            position: DVec3::from_array(light.position),
+            intensity: overrides.light_strength.unwrap_or(light.intensity),
+        };
+        let reflectance = |own: f64| overrides.reflectance.unwrap_or(own);
+        match &entry.kind {
+            Kind::Diffuse { light, .. } => Compiled::Diffuse(Scene {
+                light: point(light),
+                surface: Nothing,
+                floor,
+                camera,
+            }),
+            Kind::PlanarMirror { light, mirror, .. } => Compiled::PlanarMirror(Scene {
+                light: point(light),
+                surface: Rectangle::new(mirror, reflectance(mirror.reflectance)),
+                floor,
+                camera,
+            }),
+            Kind::CylinderCup { light, wall, .. } => {
+                let elevation = light.elevation_degrees.to_radians();
+                Compiled::CylinderCup(Scene {
+                    light: Directional {
+                        travel: DVec3::new(libm::cos(elevation), 0.0, -libm::sin(elevation)),
+                        irradiance: overrides.light_strength.unwrap_or(light.irradiance),
+                    },
+                    surface: Arc::new(wall, reflectance(wall.reflectance)),
+                    floor,
+                    camera,
+                })
+            }
+            Kind::FlatInterface { light, water, .. } => Compiled::FlatInterface(Scene {
+                light: point(light),
+                surface: Water::new(water),
+                floor,
+                camera,
+            }),
+        }
+    }
+}
+
+/// Where a ray reaches the floor.
+#[derive(Clone, Copy, Debug)]
+pub struct Landing {
+    /// The point, z = 0 [m].
+    pub x: f64,
+    /// Second coordinate of the point [m].
+    pub y: f64,
+    /// Cosine of the angle of arrival.
+    pub cosine: f64,
+    /// Reflectance or transmittance on the way (1 for a straight ray); 0 where the ray does not reach the floor.
+    pub weight: f64,
+    /// Whether there was a specular interaction on the way.
+    pub via: bool,
+}
+
+impl<L: Light, S: Specular> Scene<L, S> {
+    /// Follows a ray to the floor, through at most one specular interaction.
+    #[inline(always)]
+    pub fn landing(&self, origin: DVec3, direction: DVec3) -> Landing {
+        let meeting = self.surface.meet(origin, direction);
+        let straight = Floor::meet(origin, direction);
+        let via = meeting.t < straight;
+        let (o, d, weight) = if via {
+            (meeting.point, meeting.direction, meeting.weight)
+        } else {
+            (origin, direction, 1.0)
+        };
+        let t = if via { Floor::meet(o, d) } else { straight };
+        let (x, y) = (o.x + d.x * t, o.y + d.y * t);
+        let reaches = (t < f64::INFINITY) & self.floor.contains(x, y);
+        Landing {
+            x: if reaches { x } else { 0.0 },
+            y: if reaches { y } else { 0.0 },
+            cosine: -d.z / f64::sqrt(d.dot(d)),
+            weight: if reaches { weight } else { 0.0 },
+            via,
+        }
+    }
+}
+
+/// The unit vector along `v`. (glam's own goes through a software square root.)
+pub fn unit(v: DVec3) -> DVec3 {
+    v / f64::sqrt(v.dot(v))
+}

@@ -1,0 +1,106 @@
+//! `pt`: path tracing with next event estimation at the first diffuse vertex.
+//!
+//! A camera path cannot meet a point light or a directional one by chance, so only light that reaches the floor in a
+//! straight line is sampled: LDE and LDSE.
+
+use multiversion::multiversion;
+use nephroid_analytic::scene::Entry;
+
+use crate::film::Film;
+use crate::geometry::light::Light;
+use crate::geometry::scene::{Compiled, Scene};
+use crate::geometry::specular::Specular;
+use crate::stream::{BLOCK, Lanes, Stream, zeros};
+
+use super::camera_paths::{CameraPaths, DIRECT};
+use super::plan::{next_event_plan, not_sampled, plan_of};
+use super::settings::{Defect, Settings};
+use super::{Integrator, Plan, Prepared};
+
+/// Path tracing with next event estimation.
+pub struct Pt {
+    settings: Settings,
+}
+
+impl Pt {
+    /// The method; the kernel is ignored.
+    pub fn new(settings: Settings) -> Self {
+        Pt { settings }
+    }
+}
+
+impl Integrator for Pt {
+    fn name(&self) -> &'static str {
+        "pt"
+    }
+
+    fn title(&self) -> &'static str {
+        "path tracing with next event estimation"
+    }
+
+    fn plan(&self, entry: &Entry) -> Plan {
+        plan_of(entry, |class| {
+            next_event_plan(class).unwrap_or_else(|| {
+                not_sampled(
+                    class,
+                    "the light is a point or a direction and the vertex next to it is specular: no camera path hits it",
+                )
+            })
+        })
+    }
+
+    fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
+        let defect = Defect::new(self.settings.fault);
+        match Compiled::new(entry, defect.overrides()) {
+            Compiled::Diffuse(scene) => Box::new(PreparedPt { scene, defect }),
+            Compiled::PlanarMirror(scene) => Box::new(PreparedPt { scene, defect }),
+            Compiled::CylinderCup(scene) => Box::new(PreparedPt { scene, defect }),
+            Compiled::FlatInterface(scene) => Box::new(PreparedPt { scene, defect }),
+        }
+    }
+}
+
+struct PreparedPt<L, S> {
+    scene: Scene<L, S>,
+    defect: Defect,
+}
+
+impl<L: Light, S: Specular> Prepared for PreparedPt<L, S> {
+    fn iterate(&self, seed: u64, iteration: u32, paths: u64, _bandwidth: f64, film: &mut Film) {
+        film.paths += paths;
+        if S::SEPARATES {
+            // Every line from the floor to the light or to the eye is interrupted: there is nothing to sample.
+            return;
+        }
+        let stream = Stream::new(seed, iteration);
+        let mut block = (CameraPaths::new(), zeros());
+        for first in (0..paths).step_by(BLOCK) {
+            let live = (paths - first).min(BLOCK as u64) as usize;
+            trace(
+                &self.scene,
+                &self.defect,
+                &stream,
+                first,
+                live,
+                &mut block,
+                film,
+            );
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn trace<L: Light, S: Specular>(
+    scene: &Scene<L, S>,
+    defect: &Defect,
+    stream: &Stream,
+    first: u64,
+    live: usize,
+    block: &mut (CameraPaths, Lanes),
+    film: &mut Film,
+) {
+    let (paths, value) = block;
+    paths.draw(scene, stream, first, live);
+    paths.next_event(scene, defect, value);
+    paths.splat(film, DIRECT, value);
+}

@@ -1,0 +1,220 @@
+//! `pt-reg`: path tracing with next event estimation, and a regularized connection where there is none.
+//!
+//! From the floor point x a direction is drawn with density cos θ/π. Where it meets the specular surface, at s, the
+//! exactly reflected or refracted direction is compared with the direction to the light: the delta of the surface is
+//! replaced by a kernel φ_α on the angle g between them [Kaplanyan & Dachsbacher 2013]. Technique `camera`: an irradiance
+//! sample at x is π R I φ_α(g)/r₂², r₂ = |s - y| (directional light: π R E₀ φ_α(g)); at an interface
+//! π n² T I φ_α(g)/r₂². There is no cosine at s: φ_α is a density in solid angle, as the delta is.
+
+use core::f64::consts::PI;
+
+use glam::DVec3;
+use multiversion::multiversion;
+use nephroid_analytic::scene::Entry;
+
+use crate::film::Film;
+use crate::geometry::light::Light;
+use crate::geometry::scene::{Compiled, Scene, unit};
+use crate::geometry::specular::Specular;
+use crate::geometry::turn::sin_cos_of_turns;
+use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
+
+use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
+use super::kernel::{AngleKernel, Kernel};
+use super::plan::{next_event_plan, plan_of};
+use super::settings::{Defect, Settings};
+use super::{ClassPlan, Integrator, Plan, Prepared, Technique, Treatment};
+
+/// Path tracing with regularized connections.
+pub struct PtReg {
+    kernel: Kernel,
+    settings: Settings,
+}
+
+impl PtReg {
+    /// The method, with a cone unless the settings name another kernel on the angle.
+    pub fn new(settings: Settings) -> Self {
+        PtReg {
+            kernel: settings.kernel.unwrap_or(Kernel::Cone),
+            settings,
+        }
+    }
+}
+
+impl Integrator for PtReg {
+    fn name(&self) -> &'static str {
+        "pt-reg"
+    }
+
+    fn title(&self) -> &'static str {
+        "path tracing with next event estimation, caustics regularized at the specular vertex next to the light"
+    }
+
+    fn plan(&self, entry: &Entry) -> Plan {
+        plan_of(entry, |class| {
+            next_event_plan(class).unwrap_or_else(|| ClassPlan {
+                class,
+                treatment: Treatment::Regularized(Technique::Camera),
+                reason: format!(
+                    "irregular: light and specular vertex are both singular; {} kernel on the angle at the specular \
+                     vertex next to the light, cosine-distributed direction from the floor",
+                    self.kernel
+                ),
+            })
+        })
+    }
+
+    fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
+        let defect = Defect::new(self.settings.fault);
+        let (kernel, settings) = (self.kernel, self.settings);
+        macro_rules! prepared {
+            ($scene:expr) => {
+                Box::new(PreparedPtReg {
+                    scene: $scene,
+                    kernel,
+                    settings,
+                    defect,
+                })
+            };
+        }
+        match Compiled::new(entry, defect.overrides()) {
+            Compiled::Diffuse(scene) => prepared!(scene),
+            Compiled::PlanarMirror(scene) => prepared!(scene),
+            Compiled::CylinderCup(scene) => prepared!(scene),
+            Compiled::FlatInterface(scene) => prepared!(scene),
+        }
+    }
+}
+
+struct PreparedPtReg<L, S> {
+    scene: Scene<L, S>,
+    kernel: Kernel,
+    settings: Settings,
+    defect: Defect,
+}
+
+impl<L: Light, S: Specular> Prepared for PreparedPtReg<L, S> {
+    fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
+        film.paths += paths;
+        let stream = Stream::new(seed, iteration);
+        let kernel = AngleKernel::new(self.kernel, bandwidth, self.settings.fault);
+        let mut block = Block::new();
+        for first in (0..paths).step_by(BLOCK) {
+            let live = (paths - first).min(BLOCK as u64) as usize;
+            trace(
+                &self.scene,
+                &self.defect,
+                &kernel,
+                &stream,
+                first,
+                live,
+                &mut block,
+                film,
+            );
+        }
+    }
+}
+
+struct Block {
+    paths: CameraPaths,
+    value: Lanes,
+    squared_chord: Lanes,
+    u: Lanes,
+    v: Lanes,
+}
+
+impl Block {
+    fn new() -> Self {
+        Block {
+            paths: CameraPaths::new(),
+            value: zeros(),
+            squared_chord: zeros(),
+            u: zeros(),
+            v: zeros(),
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn trace<L: Light, S: Specular>(
+    scene: &Scene<L, S>,
+    defect: &Defect,
+    kernel: &AngleKernel,
+    stream: &Stream,
+    first: u64,
+    live: usize,
+    block: &mut Block,
+    film: &mut Film,
+) {
+    let Block {
+        paths,
+        value,
+        squared_chord,
+        u,
+        v,
+    } = block;
+    paths.draw(scene, stream, first, live);
+    if !S::SEPARATES {
+        paths.next_event(scene, defect, value);
+        paths.splat(film, DIRECT, value);
+    }
+    if S::EXISTS {
+        stream.pairs(first, Dimension::Direction, u, v);
+        connect(scene, defect, paths, u, v, value, squared_chord);
+        finish(kernel, value, squared_chord);
+        paths.splat(film, CAUSTIC, value);
+    }
+}
+
+/// Everything but the kernel: what it multiplies, and where it is evaluated.
+#[inline(always)]
+fn connect<L: Light, S: Specular>(
+    scene: &Scene<L, S>,
+    defect: &Defect,
+    paths: &CameraPaths,
+    u: &Lanes,
+    v: &Lanes,
+    value: &mut Lanes,
+    squared_chord: &mut Lanes,
+) {
+    // Into a medium of index n radiance grows by n², the inverse of what it loses on its way out.
+    let common = scene.floor.bsdf * PI / scene.surface.radiance_scale();
+    let scale = CAUSTIC.map(|class| common * defect.class_scale(class));
+    for i in 0..BLOCK {
+        let (sine, cosine) = sin_cos_of_turns(u[i]);
+        let (r, z) = (f64::sqrt(v[i]), f64::sqrt(1.0 - v[i]));
+        let origin = DVec3::new(paths.x[i], paths.y[i], 0.0);
+        let meeting = scene
+            .surface
+            .meet(origin, DVec3::new(r * cosine, r * sine, z));
+        let (towards, _) = scene.light.towards(meeting.point);
+        let difference = meeting.direction - unit(towards);
+        let scale = if paths.via[i] > 0.5 {
+            scale[1]
+        } else {
+            scale[0]
+        };
+        let irradiance = scene.light.normal_irradiance(towards);
+        let sample = scale * paths.weight[i] * meeting.weight * irradiance;
+        squared_chord[i] = difference.dot(difference);
+        value[i] = if meeting.weight > 0.0 {
+            sample * defect.beside_cosine(z)
+        } else {
+            0.0
+        };
+    }
+}
+
+/// Multiplies by the kernel, where it is not zero.
+#[inline(always)]
+fn finish(kernel: &AngleKernel, value: &mut Lanes, squared_chord: &Lanes) {
+    let mut list = [0_u16; BLOCK];
+    let n = select(&mut list, |i| {
+        (value[i] > 0.0) & (squared_chord[i] < kernel.support)
+    });
+    let sample = core::mem::replace(value, zeros());
+    for &i in &list[..n] {
+        let i = usize::from(i);
+        value[i] = sample[i] * kernel.density(squared_chord[i]);
+    }
+}
