@@ -4,6 +4,7 @@ pub mod cli;
 pub mod entry;
 pub mod error;
 pub mod exit;
+pub mod expectation;
 pub mod exr_output;
 pub mod film;
 pub mod geometry;

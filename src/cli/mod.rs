@@ -1,7 +1,9 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod explain;
 mod list;
 mod render;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -24,7 +26,9 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Verify(verify::Args),
     List(list::Args),
+    Explain(explain::Args),
     Render(render::Args),
 }
 
@@ -33,7 +37,9 @@ pub fn main() -> ExitCode {
     // A usage error exits with 2 through clap itself; --help and --version with 0.
     let cli = Cli::parse();
     let result = match cli.command {
+        Command::Verify(args) => verify::run(&args),
         Command::List(args) => list::run(&args),
+        Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
     };
     match result {

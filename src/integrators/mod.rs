@@ -77,6 +77,11 @@ pub trait Integrator: Send + Sync {
     /// What the method does about each class of the scene.
     fn plan(&self, entry: &Entry) -> Plan;
 
+    /// The bandwidths of the iterations of one run that starts with `first`: constant unless the method shrinks it.
+    fn bandwidths(&self, iterations: u32, first: f64) -> Vec<f64> {
+        vec![first; iterations as usize]
+    }
+
     /// Compiles a validated scene into what this method must do on it and no more.
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared>;
 }

@@ -71,7 +71,8 @@ pub fn student_survival(t: f64, dof: f64) -> f64 {
 
 /// The t with P(T > t) = `p`, for 0 < p < 1 and `dof` ≥ 1: to about 1e-12 relative in p. NaN outside.
 pub fn student_quantile(p: f64, dof: f64) -> f64 {
-    if !(p > 0.0 && p < 1.0) || !(dof >= 1.0) {
+    let has_meaning = p > 0.0 && p < 1.0 && dof >= 1.0;
+    if !has_meaning {
         return f64::NAN;
     }
     if p > 0.5 {

@@ -17,6 +17,7 @@ pub fn outcome(o: &Outcome) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "effort": o.effort.to_string(),
         "seed": o.seed,
+        "bandwidth": o.bandwidth,
         "margin": o.margin,
         "level": o.level,
         "equivalence_level": o.equivalence_level,

@@ -46,10 +46,7 @@ fn case(v: &Verdict) -> TestCase {
         status.set_type(f.state.word());
         status.set_description(format!("again: {}", v.command));
     }
-    let mut case = TestCase::new(
-        format!("{}/{}/{}", v.integrator, v.class, v.region),
-        status,
-    );
+    let mut case = TestCase::new(format!("{}/{}/{}", v.integrator, v.class, v.region), status);
     case.set_classname(v.scene.as_str())
         .set_time(duration(v.seconds));
     case

@@ -3,7 +3,6 @@
 use core::fmt::Write as _;
 
 use crate::judge::verdict::{Finding, State};
-use crate::verify::effort::BANDWIDTH;
 use crate::verify::verdicts::{NotRun, Outcome, Verdict};
 
 /// The whole answer, without a final newline.
@@ -101,29 +100,33 @@ fn details(v: &Verdict) -> Vec<String> {
 
 /// Pairs that were left out for the same reason, one line for each reason.
 pub fn grouped(not_run: &[NotRun]) -> Vec<String> {
-    let mut groups: Vec<(&str, Vec<(&str, Vec<&str>)>)> = Vec::new();
-    for n in not_run {
-        let group = match groups.iter_mut().find(|(reason, _)| *reason == n.reason) {
-            Some(group) => group,
-            None => {
-                groups.push((&n.reason, Vec::new()));
-                let last = groups.len() - 1;
-                &mut groups[last]
-            }
-        };
-        match group.1.iter_mut().find(|(scene, _)| *scene == n.scene) {
-            Some((_, integrators)) => integrators.push(&n.integrator),
-            None => group.1.push((&n.scene, vec![&n.integrator])),
+    let mut reasons: Vec<&str> = not_run.iter().map(|n| n.reason.as_str()).collect();
+    let mut seen = Vec::new();
+    reasons.retain(|r| {
+        !seen.contains(r) && {
+            seen.push(*r);
+            true
+        }
+    });
+    reasons
+        .into_iter()
+        .map(|r| format!("{}: {r}", pairs_with(not_run, r)))
+        .collect()
+}
+
+/// `floor with pt, lt; cup with pm`.
+fn pairs_with(not_run: &[NotRun], reason: &str) -> String {
+    let mut text = String::new();
+    let mut scene = None;
+    for n in not_run.iter().filter(|n| n.reason == reason) {
+        if scene.replace(&n.scene) == Some(&n.scene) {
+            let _ = write!(text, ", {}", n.integrator);
+        } else {
+            let separator = if text.is_empty() { "" } else { "; " };
+            let _ = write!(text, "{separator}{} with {}", n.scene, n.integrator);
         }
     }
-    let line = |(reason, scenes): &(&str, Vec<(&str, Vec<&str>)>)| {
-        let scenes: Vec<_> = scenes
-            .iter()
-            .map(|(scene, integrators)| format!("{scene} with {}", integrators.join(", ")))
-            .collect();
-        format!("{}: {reason}", scenes.join("; "))
-    };
-    groups.iter().map(line).collect()
+    text
 }
 
 /// How many of each, and what the error probabilities are.
@@ -143,11 +146,12 @@ pub fn summary(o: &Outcome) -> String {
         .map(|s| format!("{} {}", count(s), s.word()))
         .collect();
     format!(
-        "{}. Effort {}, seed {}, {:.1} s.\n\
+        "{}. Effort {}, α = r = {}, seed {}, {:.1} s.\n\
          Equivalent: within {} of the truth; a suite says so falsely with probability at most {:e}.\n\
          Different: a suite of correct integrators says so with probability at most {:e} ({} checks share it).",
         counts.join(", "),
         o.effort,
+        o.bandwidth,
         o.seed,
         o.seconds,
         percent(o.margin),
@@ -160,19 +164,4 @@ pub fn summary(o: &Outcome) -> String {
 fn percent(fraction: f64) -> String {
     // Through f32, so that 100 × 0.07 does not show its rounding.
     format!("{} %", (100.0 * fraction) as f32)
-}
-
-/// The line above the verdicts: what is about to run.
-pub fn opening(o: &crate::verify::run::Request) -> String {
-    let bandwidth = if o.bandwidth == BANDWIDTH {
-        String::new()
-    } else {
-        format!(", bandwidth {}", o.bandwidth)
-    };
-    format!(
-        "{}: margin {}, seed {}{bandwidth}",
-        o.effort,
-        percent(o.margin),
-        o.seed
-    )
 }

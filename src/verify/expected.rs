@@ -3,10 +3,12 @@
 
 use std::collections::HashMap;
 
-use nephroid_analytic::bandwidth::{Kernel, Technique as Mollified};
+use nephroid_analytic::bandwidth::{Kernel, Moments, Technique as Mollified};
 use nephroid_analytic::camera::Bounded;
+use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use crate::error::Error;
 use crate::integrators::{Plan, Technique, Treatment};
 use crate::{expectation, truth};
 
@@ -24,7 +26,7 @@ impl Truths {
     /// the entry's position in the suite; `bandwidths` are those of the iterations, which all have as many paths.
     ///
     /// # Errors
-    /// A sentence that says why there is no truth.
+    /// [`Error::Parameter`] for a kernel or a bandwidth that does not fit the technique.
     pub fn of(
         &mut self,
         scene: usize,
@@ -32,7 +34,8 @@ impl Truths {
         plan: &Plan,
         kernel: Option<Kernel>,
         bandwidths: &[f64],
-    ) -> Result<Vec<Option<Bounded>>, String> {
+    ) -> Result<Vec<Option<Bounded>>, Error> {
+        let mut regularized: Option<(Technique, Vec<(PathClass, Moments)>)> = None;
         let mut result = Vec::with_capacity(plan.len());
         for class in plan {
             result.push(match class.treatment {
@@ -43,21 +46,44 @@ impl Truths {
                         .entry(scene)
                         .or_insert_with(|| truth::image(entry, TOLERANCE).class_means());
                     let position = entry.kind.classes().iter().position(|&c| c == class.class);
-                    Some(position.map(|p| means[p]).ok_or("no closed form")?)
+                    position.map(|p| means[p])
                 }
                 Treatment::Regularized(technique) => {
-                    let mollified = mollified(technique)
-                        .ok_or("this technique has no expectation at finite bandwidth")?;
-                    let kernel = kernel.unwrap_or(default_kernel(mollified));
-                    let means =
-                        expectation::class_means(entry, mollified, kernel, bandwidths, TOLERANCE);
+                    // One computation serves all classes of a technique.
+                    let known = regularized.take().filter(|(t, _)| *t == technique);
+                    let (_, means) = match known {
+                        Some(known) => regularized.insert(known),
+                        None => regularized
+                            .insert((technique, finite(entry, technique, kernel, bandwidths)?)),
+                    };
                     let mean = means.iter().find(|(c, _)| *c == class.class);
-                    Some(mean.map(|(_, m)| m.mean).ok_or("no exact expectation")?)
+                    mean.map(|(_, m)| m.mean)
                 }
             });
         }
         Ok(result)
     }
+}
+
+/// Expectations of the regularized classes; none for a technique that the truth does not know.
+fn finite(
+    entry: &Entry,
+    technique: Technique,
+    kernel: Option<Kernel>,
+    bandwidths: &[f64],
+) -> Result<Vec<(PathClass, Moments)>, Error> {
+    let Some(technique) = mollified(technique) else {
+        return Ok(Vec::new());
+    };
+    let kernel = kernel.unwrap_or(default_kernel(technique));
+    expectation::class_means(entry, technique, kernel, bandwidths, TOLERANCE).map_err(|e| {
+        Error::Parameter {
+            file: "command line".to_owned(),
+            key: format!("--{}", e.key),
+            found: e.found,
+            allowed: e.allowed,
+        }
+    })
 }
 
 /// The name under which the truth knows a regularizing technique.

@@ -8,8 +8,9 @@ use super::effort::Effort;
 use super::expected::Truths;
 use super::replicates::{Canvas, FINAL, Seeds, Shape, run as run_replicates};
 use super::sizing::{self, Check, Demand, Size};
-use super::suite::{Coverage, Pair, Subject, select};
+use super::suite::{Coverage, LeftOut, Pair, Subject, select};
 use super::verdicts::{ALL_CLASSES, NotRun, Outcome, Verdict, WHOLE_IMAGE};
+use crate::error::Error;
 use crate::integrators::{Integrator, Kernel, Prepared, Technique, Treatment};
 use crate::judge::evidence::{Replicate, Sample};
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
@@ -28,6 +29,8 @@ pub struct Request {
     pub scenes: Vec<Subject>,
     /// The integrators.
     pub integrators: Vec<Box<dyn Integrator>>,
+    /// Integrators that were not asked for by name and cannot take part.
+    pub left_out: Vec<LeftOut>,
     /// How much to do.
     pub effort: Effort,
     /// Which pairs to run.
@@ -47,9 +50,22 @@ pub struct Request {
 }
 
 /// Runs the suite. `progress` hears of each pair before it starts: its position, their number, scene and integrator.
-pub fn run(request: &Request, progress: &dyn Fn(usize, usize, &str, &str)) -> Outcome {
+///
+/// # Errors
+/// A kernel or a bandwidth that does not fit.
+pub fn run(
+    request: &Request,
+    progress: &dyn Fn(usize, usize, &str, &str),
+) -> Result<Outcome, Error> {
     let started = Instant::now();
     let (pairs, mut not_run) = select(&request.scenes, &request.integrators, request.coverage);
+    for subject in &request.scenes {
+        not_run.extend(request.left_out.iter().map(|l| NotRun {
+            scene: subject.entry.name.clone(),
+            integrator: l.integrator.clone(),
+            reason: l.reason.clone(),
+        }));
+    }
     let planned: u64 = pairs.iter().map(Pair::checks).sum();
     let checks = planned.max(request.checks.unwrap_or(0));
     let levels = Levels::shared(request.level, EQUIVALENCE_LEVEL, checks);
@@ -59,16 +75,9 @@ pub fn run(request: &Request, progress: &dyn Fn(usize, usize, &str, &str)) -> Ou
         let scene = &request.scenes[pair.scene].entry.name;
         let integrator = request.integrators[pair.integrator].name();
         progress(position, pairs.len(), scene, integrator);
-        match run_pair(request, pair, levels, checks, &mut truths) {
-            Ok(more) => verdicts.extend(more),
-            Err(reason) => not_run.push(NotRun {
-                scene: scene.clone(),
-                integrator: integrator.to_owned(),
-                reason,
-            }),
-        }
+        verdicts.extend(run_pair(request, pair, levels, checks, &mut truths)?);
     }
-    Outcome {
+    Ok(Outcome {
         verdicts,
         not_run,
         effort: request.effort,
@@ -76,9 +85,10 @@ pub fn run(request: &Request, progress: &dyn Fn(usize, usize, &str, &str)) -> Ou
         equivalence_level: EQUIVALENCE_LEVEL,
         checks,
         margin: request.margin,
+        bandwidth: request.bandwidth,
         seed: request.seed,
         seconds: started.elapsed().as_secs_f64(),
-    }
+    })
 }
 
 fn run_pair(
@@ -87,7 +97,7 @@ fn run_pair(
     levels: Levels,
     checks: u64,
     truths: &mut Truths,
-) -> Result<Vec<Verdict>, String> {
+) -> Result<Vec<Verdict>, Error> {
     let started = Instant::now();
     let subject = &request.scenes[pair.scene];
     let integrator = request.integrators[pair.integrator].as_ref();
@@ -121,7 +131,7 @@ fn run_pair(
         .map(|judged| {
             let treatment = judged.class.map(|c| pair.plan[c].treatment);
             let regularized = match treatment {
-                Some(t) => matches!(t, Treatment::Regularized(_)),
+                Some(t) => is_regularized(t),
                 None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
             };
             let class = judged.class.map(|c| pair.plan[c].class.to_string());
@@ -202,14 +212,7 @@ pub fn gather(
     let prepared = prepare();
     let prepared = prepared.as_ref();
     let size = sizing::plan(prepared, canvas, shape, seeds, &checks, demand);
-    let replicates = run_replicates(
-        prepared,
-        canvas,
-        &size.shape,
-        seeds,
-        FINAL,
-        size.replicates,
-    );
+    let replicates = run_replicates(prepared, canvas, &size.shape, seeds, FINAL, size.replicates);
     Evidence { replicates, size }
 }
 

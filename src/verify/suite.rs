@@ -2,8 +2,9 @@
 
 use nephroid_analytic::scene::{Entry, Kind};
 
+use super::expected::mollified;
 use super::verdicts::NotRun;
-use crate::integrators::{Integrator, Plan, Treatment};
+use crate::integrators::{ClassPlan, Integrator, Plan, Treatment};
 
 /// A scene as the user named it.
 pub struct Subject {
@@ -11,6 +12,15 @@ pub struct Subject {
     pub argument: String,
     /// What it stands for.
     pub entry: Entry,
+}
+
+/// An integrator that takes part in no pair.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Its name.
+    pub integrator: String,
+    /// Why.
+    pub reason: String,
 }
 
 /// How many of the pairs are run.
@@ -36,9 +46,8 @@ pub struct Pair {
 impl Pair {
     /// Positions of the classes that the integrator claims.
     pub fn claimed(&self) -> Vec<usize> {
-        let sampled = |(i, c): (usize, &crate::integrators::ClassPlan)| {
-            (c.treatment != Treatment::NotSampled).then_some(i)
-        };
+        let sampled =
+            |(i, c): (usize, &ClassPlan)| (c.treatment != Treatment::NotSampled).then_some(i);
         self.plan.iter().enumerate().filter_map(sampled).collect()
     }
 
@@ -97,11 +106,13 @@ pub fn select(
 
 /// Why a plan cannot be judged on an entry.
 fn without_truth(entry: &Entry, plan: &Plan) -> Option<String> {
-    let regularized = plan
-        .iter()
-        .any(|c| matches!(c.treatment, Treatment::Regularized(_)));
-    let has_expectation = matches!(entry.kind, Kind::PlanarMirror { .. });
-    (regularized && !has_expectation).then(|| {
+    let unknown = |t: Treatment| match t {
+        Treatment::Regularized(technique) => {
+            mollified(technique).is_none() || !matches!(entry.kind, Kind::PlanarMirror { .. })
+        }
+        _ => false,
+    };
+    plan.iter().any(|c| unknown(c.treatment)).then(|| {
         format!(
             "no exact expectation at finite bandwidth for the kind {}",
             entry.kind.name()

@@ -76,6 +76,8 @@ pub struct Outcome {
     pub checks: u64,
     /// Equivalence margin relative to the truth.
     pub margin: f64,
+    /// Angle [rad] or radius [m] of the mollifiers.
+    pub bandwidth: f64,
     /// The user's seed.
     pub seed: u64,
     /// Wall-clock time.
