@@ -38,6 +38,10 @@ fn cross(a: V, b: V) -> V {
     ]
 }
 
+fn cubed(a: f64) -> f64 {
+    a * a * a
+}
+
 fn unit(a: V) -> V {
     scaled(a, 1.0 / dot(a, a).sqrt())
 }
@@ -109,7 +113,7 @@ impl Plain {
         let d = sub(self.light, x);
         let free = self.crossing(x, self.light).is_none();
         if free {
-            self.intensity * d[2] / dot(d, d).powi(3).sqrt()
+            self.intensity * d[2] / cubed(dot(d, d)).sqrt()
         } else {
             0.0
         }
@@ -123,7 +127,7 @@ impl Plain {
         let d = sub(image, x);
         let lit = x[1] < y && self.crossing(x, image).is_some();
         if lit {
-            reflectance * self.intensity * d[2] / dot(d, d).powi(3).sqrt()
+            reflectance * self.intensity * d[2] / cubed(dot(d, d)).sqrt()
         } else {
             0.0
         }
@@ -161,7 +165,7 @@ impl Plain {
             for j in 0..2 * n {
                 // Equal areas.
                 let d = r * ((i as f64 + 0.5) / n as f64).sqrt();
-                let (s, c) = (core::f64::consts::PI * (j as f64 + 0.5) / n as f64).sin_cos();
+                let (s, c) = libm::sincos(core::f64::consts::PI * (j as f64 + 0.5) / n as f64);
                 let p = [x[0] + d * c, x[1] + d * s, 0.0];
                 let on_floor = p[0].abs() <= self.half[0] && p[1].abs() <= self.half[1];
                 sum += if on_floor { self.caustic(p) } else { 0.0 };
@@ -176,7 +180,7 @@ impl Plain {
         let forward = unit(sub(camera.look_at, camera.position));
         let right = unit(cross(forward, camera.up));
         let up = cross(right, forward);
-        let half = (0.5 * camera.field_of_view_degrees.to_radians()).tan();
+        let half = libm::tan(0.5 * camera.field_of_view_degrees.to_radians());
         assert_eq!(camera.width, camera.height);
         let on_floor = |o: V, d: V| {
             let x = plus(o, scaled(d, -o[2] / d[2]));
@@ -210,7 +214,7 @@ impl Plain {
                     );
                     // Film area per mirror area at depth 1: the foreshortened area over D², and 1/cos³ of the axis.
                     let density =
-                        d[1] / depth.powi(3) * 2.0 * wide * (high - low) / (4.0 * half * half);
+                        d[1] / cubed(depth) * 2.0 * wide * (high - low) / (4.0 * half * half);
                     if let Some(x) = on_floor([sx, y, sz], [d[0], -d[1], d[2]]) {
                         means[1] += reflectance * irradiance(x) * density;
                     }
@@ -243,7 +247,11 @@ fn replicate_means(
     (0..classes.len())
         .map(|c| {
             let mean = rows.iter().map(|r| r[c]).sum::<f64>() / m;
-            let variance = rows.iter().map(|r| (r[c] - mean).powi(2)).sum::<f64>() / (m - 1.0);
+            let variance = rows
+                .iter()
+                .map(|r| (r[c] - mean) * (r[c] - mean))
+                .sum::<f64>()
+                / (m - 1.0);
             (classes[c], mean, (variance / m).sqrt())
         })
         .collect()
@@ -290,12 +298,12 @@ fn unregularized_classes_have_the_right_mean() {
     for scene in ["floor", "mirror-wall"] {
         let plain = Plain::load(scene);
         let direct = refined(
-            plain.film_means(300, &|x| plain.direct(x)),
-            plain.film_means(600, &|x| plain.direct(x)),
+            plain.film_means(500, &|x| plain.direct(x)),
+            plain.film_means(1000, &|x| plain.direct(x)),
         );
         let caustic = refined(
-            plain.film_means(300, &|x| plain.caustic(x)),
-            plain.film_means(600, &|x| plain.caustic(x)),
+            plain.film_means(500, &|x| plain.caustic(x)),
+            plain.film_means(1000, &|x| plain.caustic(x)),
         );
         let settings = Settings::default();
         for name in ["pt", "pt-reg"] {
@@ -318,23 +326,30 @@ fn the_regularized_classes_have_the_mean_of_technique_camera() {
     let plain = Plain::load("mirror-wall");
     let alpha: f64 = 0.2;
     let kappa = 4.0 / (alpha * alpha);
-    let vmf_norm = kappa / (core::f64::consts::TAU * (1.0 - (-2.0 * kappa).exp()));
-    let vmf = |cos_g: f64| vmf_norm * (kappa * (cos_g - 1.0)).exp();
-    let cone_norm = 1.0 / (core::f64::consts::TAU * (1.0 - alpha.cos()));
-    let cone = |cos_g: f64| if cos_g > alpha.cos() { cone_norm } else { 0.0 };
-    let cases: [(Kernel, &dyn Fn(f64) -> f64, [usize; 2]); 2] = [
-        (Kernel::VonMisesFisher, &vmf, [12, 16]),
-        (Kernel::Cone, &cone, [24, 32]),
+    let vmf_norm = kappa / (core::f64::consts::TAU * (1.0 - libm::exp(-2.0 * kappa)));
+    let vmf = |cos_g: f64| vmf_norm * libm::exp(kappa * (cos_g - 1.0));
+    let cone_norm = 1.0 / (core::f64::consts::TAU * (1.0 - libm::cos(alpha)));
+    let cone = |cos_g: f64| {
+        if cos_g > libm::cos(alpha) {
+            cone_norm
+        } else {
+            0.0
+        }
+    };
+    type Case<'a> = (Kernel, &'a dyn Fn(f64) -> f64, [usize; 2]);
+    let cases: [Case; 2] = [
+        (Kernel::VonMisesFisher, &vmf, [16, 24]),
+        (Kernel::Cone, &cone, [36, 52]),
     ];
     for (kernel, phi, mirror) in cases {
         let means =
             |film: usize, n: usize| plain.film_means(film, &|x| plain.camera_side(x, n, phi));
-        let expected = refined(means(140, mirror[0]), means(200, mirror[1]));
+        let expected = refined(means(70, mirror[0]), means(100, mirror[1]));
         let settings = Settings {
             kernel: Some(kernel),
             fault: None,
         };
-        let found = replicate_means("pt-reg", &settings, &plain.entry, 3_000_000, alpha);
+        let found = replicate_means("pt-reg", &settings, &plain.entry, 1_000_000, alpha);
         check(
             &format!("pt-reg {kernel}"),
             &found,
@@ -342,5 +357,21 @@ fn the_regularized_classes_have_the_mean_of_technique_camera() {
             CAUSTIC,
             0.025,
         );
+    }
+}
+
+#[test]
+fn merging_has_the_mean_of_the_convolved_caustic() {
+    let plain = Plain::load("mirror-wall");
+    let r = 0.2;
+    let means = |film: usize, n: usize| plain.film_means(film, &|x| plain.merged(x, r, n));
+    let expected = refined(means(70, 10), means(100, 14));
+    for (name, kernel) in [("pm", None), ("ppm", Some(Kernel::Disc))] {
+        let settings = Settings {
+            kernel,
+            fault: None,
+        };
+        let found = replicate_means(name, &settings, &plain.entry, 200_000, r);
+        check(name, &found, expected, CAUSTIC, 0.04);
     }
 }

@@ -3,6 +3,7 @@
 mod explain;
 mod list;
 mod render;
+mod run;
 mod verify;
 
 use std::process::ExitCode;
@@ -30,6 +31,7 @@ enum Command {
     List(list::Args),
     Explain(explain::Args),
     Render(render::Args),
+    Run(run::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -41,6 +43,7 @@ pub fn main() -> ExitCode {
         Command::List(args) => list::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Run(args) => run::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

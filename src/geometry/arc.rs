@@ -92,3 +92,77 @@ impl Specular for Arc {
         (outer < t_end) | (inner < t_end)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HALF_ARC: f64 = 50.0;
+
+    fn wall() -> Arc {
+        let wall = ArcWall {
+            radius: 1.2,
+            height: 0.6,
+            half_arc_degrees: HALF_ARC,
+            reflectance: 0.9,
+        };
+        Arc::new(&wall, wall.reflectance)
+    }
+
+    fn at(degrees: f64, z: f64) -> DVec3 {
+        let (s, c) = libm::sincos(degrees.to_radians());
+        DVec3::new(1.2 * c, 1.2 * s, z)
+    }
+
+    #[test]
+    fn the_inner_side_reflects_with_equal_angles() {
+        let wall = wall();
+        for (origin, degrees, z) in [
+            (DVec3::new(-2.0, 0.3, 1.5), 20.0, 0.3),
+            (DVec3::new(0.1, -0.4, 0.0), -49.9, 0.59),
+            (DVec3::new(0.1, -0.4, 0.0), 0.0, 0.0),
+        ] {
+            let target = at(degrees, z);
+            let m = wall.meet(origin, target - origin);
+            assert!((m.point - target).length() < 1e-12 && m.weight == 0.9);
+            // In plan the direction turns by π - 2i about the vertical; its slope stays.
+            let (d, normal) = (target - origin, at(degrees, 0.0) / 1.2);
+            assert!((m.direction.dot(normal) + d.dot(normal)).abs() < 1e-12);
+            assert!((m.direction.z - d.z).abs() < 1e-15);
+            let tangent = DVec3::new(-normal.y, normal.x, 0.0);
+            assert!((m.direction.dot(tangent) - d.dot(tangent)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_outer_side_absorbs_and_what_is_no_wall_lets_pass() {
+        let wall = wall();
+        let outside = DVec3::new(3.0, 0.1, 0.2);
+        let m = wall.meet(outside, at(5.0, 0.3) - outside);
+        assert!((m.t - 1.0).abs() < 1e-12 && m.weight == 0.0);
+        let inside = DVec3::new(0.1, 0.2, 0.1);
+        for target in [
+            at(HALF_ARC + 0.1, 0.3),
+            at(-HALF_ARC - 0.1, 0.3),
+            at(10.0, 0.61),
+            at(180.0, 0.3),
+        ] {
+            let d = target - inside;
+            assert_eq!(wall.meet(inside, d).t, f64::INFINITY);
+            assert!(!wall.blocks(inside, d, f64::INFINITY));
+        }
+        let d = at(10.0, 0.3) - inside;
+        assert!(wall.blocks(inside, d, 1.1) && !wall.blocks(inside, d, 0.9));
+        assert!(wall.blocks(outside, at(5.0, 0.3) - outside, f64::INFINITY));
+        // Over the rim of the near side onto the inner side of the far one there is none: the arc is less than half.
+        assert_eq!(
+            wall.meet(inside, DVec3::new(0.0, 0.0, 1.0)).t,
+            f64::INFINITY
+        );
+        assert_eq!(
+            wall.meet(DVec3::new(5.0, 5.0, 0.1), DVec3::new(1.0, 0.0, 0.0))
+                .t,
+            f64::INFINITY
+        );
+    }
+}

@@ -117,7 +117,8 @@ mod tests {
         for p in [
             DVec3::new(0.0, -30.0, 0.0),
             DVec3::new(100.0, 0.0, 0.0),
-            DVec3::new(0.0, 1e6, 0.0),
+            DVec3::new(0.3, -2.0, 0.0),
+            DVec3::new(0.2, -1.5, 0.0),
         ] {
             assert_eq!(c.project_floor(p).2, 0.0);
         }

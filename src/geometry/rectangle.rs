@@ -73,3 +73,53 @@ impl Specular for Rectangle {
         met & (t < t_end)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tilted() -> (RectangleMirror, Rectangle) {
+        let mirror = RectangleMirror {
+            center: [1.5, 0.3, 1.0],
+            normal: [-1.6, 0.0, -1.2],
+            edge: [0.0, 3.0, 0.0],
+            half_width: 0.5,
+            half_height: 0.4,
+            reflectance: 0.8,
+        };
+        (mirror.clone(), Rectangle::new(&mirror, mirror.reflectance))
+    }
+
+    #[test]
+    fn a_ray_is_reflected_as_if_it_came_from_the_image() {
+        let (mirror, r) = tilted();
+        let n = DVec3::new(-0.8, 0.0, -0.6);
+        let center = DVec3::from_array(mirror.center);
+        let origin = DVec3::new(0.2, -0.1, 0.4);
+        let image = origin - n * (2.0 * (origin - center).dot(n));
+        let target = center + DVec3::new(0.0, 0.2, 0.0) + DVec3::new(0.6, 0.0, -0.8) * 0.3;
+        let m = r.meet(origin, target - origin);
+        assert!((m.t - 1.0).abs() < 1e-14 && (m.point - target).length() < 1e-14);
+        assert_eq!(m.weight, 0.8);
+        assert!(m.direction.cross(target - image).length() < 1e-14);
+        assert!(m.direction.dot(target - image) > 0.0);
+    }
+
+    #[test]
+    fn the_back_absorbs_and_both_sides_block() {
+        let (mirror, r) = tilted();
+        let center = DVec3::from_array(mirror.center);
+        let n = DVec3::new(-0.8, 0.0, -0.6);
+        let back = r.meet(center - n, n);
+        assert_eq!((back.t, back.weight), (1.0, 0.0));
+        for (o, d) in [(center - n, n), (center + n, -n)] {
+            assert!(r.blocks(o, d, 1.5) && !r.blocks(o, d, 0.9) && !r.blocks(o, -d, 9.0));
+        }
+        // Beyond the edges, and parallel to the plane.
+        let off = DVec3::new(0.0, 0.51, 0.0);
+        assert_eq!(r.meet(center + n + off, -n).t, f64::INFINITY);
+        let off = DVec3::new(0.6, 0.0, -0.8) * 0.41;
+        assert_eq!(r.meet(center + n + off, -n).t, f64::INFINITY);
+        assert!(!r.blocks(center + n, DVec3::new(0.0, 1.0, 0.0), f64::INFINITY));
+    }
+}

@@ -69,3 +69,68 @@ impl Specular for Water {
         1.0 / (self.index * self.index)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn water() -> Water {
+        Water::new(&WaterData {
+            surface_z: 1.1,
+            index: 1.333,
+        })
+    }
+
+    #[test]
+    fn refraction_keeps_the_plane_and_snells_law() {
+        let o = DVec3::new(0.2, -0.3, 2.0);
+        for d in [
+            DVec3::new(0.3, 0.4, -0.9),
+            DVec3::new(0.0, 0.0, -1.0),
+            DVec3::new(9.0, 1.0, -0.1),
+        ] {
+            let m = water().meet(o, d);
+            assert!(
+                (m.point.z - 1.1).abs() < 1e-15
+                    && (m.direction.length() / d.length() - 1.0).abs() < 1e-14
+            );
+            // n sin θ, horizontal part over length.
+            let sine = |v: DVec3| DVec3::new(v.x, v.y, 0.0) / v.length();
+            assert!((sine(m.direction) * 1.333 - sine(d)).length() < 1e-14);
+            assert!(m.direction.z < 0.0);
+            // Back the same way, with the same transmittance.
+            let from = m.point + m.direction;
+            let back = water().meet(from, -m.direction);
+            assert!((back.direction + d).length() < 1e-12 * d.length());
+            assert!((back.weight - m.weight).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn transmittance_at_known_angles() {
+        let o = DVec3::new(0.0, 0.0, 2.0);
+        let normal = water().meet(o, DVec3::new(0.0, 0.0, -1.0)).weight;
+        let r = 0.333 / 2.333;
+        assert!((normal - (1.0 - r * r)).abs() < 1e-15);
+        // At Brewster's angle, tan θ = n, only the s polarisation is reflected: r_s = (1 - n²)/(1 + n²).
+        let n2 = 1.333 * 1.333;
+        let brewster = water().meet(o, DVec3::new(1.333, 0.0, -1.0)).weight;
+        let rs = (1.0 - n2) / (1.0 + n2);
+        assert!((brewster - (1.0 - 0.5 * rs * rs)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn beyond_the_critical_angle_nothing_passes() {
+        let o = DVec3::new(0.0, 0.0, 0.1);
+        let critical = libm::asin(1.0 / 1.333);
+        for (angle, passes) in [
+            (critical + 1e-9, false),
+            (critical - 1e-9, true),
+            (1.57, false),
+        ] {
+            let m = water().meet(o, DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)));
+            assert_eq!(m.weight > 0.0, passes);
+            assert!(m.direction.is_finite());
+        }
+    }
+}

@@ -83,7 +83,7 @@ impl CameraPaths {
         value: &mut Lanes,
     ) {
         let scale = DIRECT.map(|class| scene.floor.bsdf * defect.class_scale(class));
-        for i in 0..BLOCK {
+        for (i, value) in value.iter_mut().enumerate() {
             let vertex = DVec3::new(self.x[i], self.y[i], 0.0);
             let (towards, t_end) = scene.light.towards(vertex);
             let cosine = towards.z / f64::sqrt(towards.dot(towards));
@@ -95,7 +95,7 @@ impl CameraPaths {
             };
             let radiance = scale * irradiance * defect.beside_cosine(cosine);
             let free = !scene.surface.blocks(vertex, towards, t_end);
-            value[i] = if free { self.weight[i] * radiance } else { 0.0 };
+            *value = if free { self.weight[i] * radiance } else { 0.0 };
         }
     }
 

@@ -4,18 +4,27 @@
 //! path classes it samples, with which technique, and which are irregular for it and thus regularized. Then it is
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
+pub mod accumulate;
 mod camera_paths;
 pub mod kernel;
 mod lt;
+mod photon_grid;
+pub mod photon_mapping;
 mod plan;
+mod pm;
+mod ppm;
 mod pt;
 mod pt_reg;
+pub mod schedule;
 mod settings;
 
 pub use kernel::Kernel;
 pub use lt::Lt;
+pub use pm::Pm;
+pub use ppm::Ppm;
 pub use pt::Pt;
 pub use pt_reg::PtReg;
+pub use schedule::Schedule;
 pub use settings::{Fault, Settings};
 
 use nephroid_analytic::class::PathClass;
@@ -77,9 +86,10 @@ pub trait Integrator: Send + Sync {
     /// What the method does about each class of the scene.
     fn plan(&self, entry: &Entry) -> Plan;
 
-    /// The bandwidths of the iterations of one run that starts with `first`: constant unless the method shrinks it.
-    fn bandwidths(&self, iterations: u32, first: f64) -> Vec<f64> {
-        vec![first; iterations as usize]
+    /// The bandwidths that the method uses, iteration by iteration, when it is given one: that one unless it says
+    /// otherwise. [`Prepared::iterate`] is given the bandwidth of its iteration.
+    fn schedule(&self, bandwidth: f64) -> Schedule {
+        Schedule::Fixed(bandwidth)
     }
 
     /// Compiles a validated scene into what this method must do on it and no more.
@@ -102,7 +112,7 @@ pub fn all() -> Vec<Box<dyn Integrator>> {
 }
 
 /// The names of the methods, in the order in which they are listed.
-pub const NAMES: [&str; 3] = ["pt", "pt-reg", "lt"];
+pub const NAMES: [&str; 5] = ["pt", "pt-reg", "lt", "pm", "ppm"];
 
 /// The method of a name.
 ///
@@ -124,6 +134,14 @@ pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, E
         "pt-reg" => {
             takes(Kernel::is_angular, "cone, epanechnikov, vmf")?;
             Box::new(PtReg::new(settings))
+        }
+        "pm" => {
+            takes(Kernel::is_planar, "disc, epanechnikov")?;
+            Box::new(Pm::new(settings))
+        }
+        "ppm" => {
+            takes(Kernel::is_planar, "disc, epanechnikov")?;
+            Box::new(Ppm::new(settings))
         }
         _ => {
             return Err(Error::UnknownName {

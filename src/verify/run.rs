@@ -164,15 +164,18 @@ fn is_regularized(treatment: Treatment) -> bool {
 
 /// The replicates that pilots start with.
 fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64) -> Shape {
+    let schedule = integrator.schedule(bandwidth);
     let merges = |t: Treatment| t == Treatment::Regularized(Technique::Merge);
     if pair.plan.iter().any(|c| merges(c.treatment)) {
         Shape {
-            bandwidths: integrator.bandwidths(MERGING_ITERATIONS, bandwidth),
+            bandwidths: (0..MERGING_ITERATIONS)
+                .map(|i| schedule.bandwidth(i))
+                .collect(),
             paths_per_iteration: MERGING_PATHS,
         }
     } else {
         Shape {
-            bandwidths: vec![bandwidth],
+            bandwidths: vec![schedule.bandwidth(0)],
             paths_per_iteration: PATHS,
         }
     }

@@ -1,0 +1,230 @@
+//! `nephroid run`: one integrator, one image.
+
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::error::Error;
+use crate::exr_output::{metadata, write_exr};
+use crate::film::Film;
+use crate::integrators::accumulate::{accumulate, paths_per_iteration};
+use crate::integrators::{
+    Integrator, Kernel, Plan, Schedule, Settings, Technique, Treatment, by_name,
+};
+use crate::{entry, exit};
+
+/// The bandwidth where none is given, an angle [rad] or a radius [m].
+const DEFAULT_BANDWIDTH: f64 = 0.2;
+
+/// Render a scene with one of the reference integrators.
+///
+/// The EXR file has a channel `<CLASS>.Y` (f32, W/(m² sr)) for each path class that the integrator samples; the file and
+/// the printed means are the same for any number of threads.
+#[derive(clap::Args)]
+pub struct Args {
+    /// A name from `nephroid list`, or a TOML file.
+    scene: String,
+    /// pt, pt-reg, lt, pm or ppm.
+    #[arg(long, value_name = "NAME")]
+    integrator: String,
+    /// Paths over the whole image, such as 3e7. A path of pm and ppm is one photon and one camera path.
+    #[arg(long, value_name = "N", value_parser = super::count)]
+    paths: u64,
+    /// Seed of the random numbers.
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    seed: u64,
+    /// Bandwidth of the regularized classes: an angle in radians for pt-reg, a radius in metres for pm; the first radius
+    /// for ppm. Default: 0.2.
+    #[arg(long, value_name = "A", conflicts_with = "schedule")]
+    bandwidth: Option<f64>,
+    /// Bandwidth per iteration: a number, a list `0.3,0.2,0.1` whose last value stays, or `ppm(R1,A)`:
+    /// r²ᵢ₊₁ = r²ᵢ (i + A)/(i + 1).
+    #[arg(long, value_name = "EXPR")]
+    schedule: Option<String>,
+    /// Paths per iteration: what a step of a schedule is. Default: 262144, or four per pixel if that is more.
+    #[arg(long, value_name = "N", value_parser = super::count)]
+    paths_per_iteration: Option<u64>,
+    /// Kernel of the regularized classes: cone, epanechnikov or vmf on the angle (pt-reg); disc or epanechnikov on the
+    /// radius (pm, ppm).
+    #[arg(long, value_name = "KERNEL")]
+    kernel: Option<Kernel>,
+    /// The EXR file to write.
+    #[arg(short, long, value_name = "FILE.exr")]
+    output: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<u8, Error> {
+    let entry = entry::load(&args.scene)?;
+    let settings = Settings {
+        kernel: args.kernel,
+        fault: None,
+    };
+    let integrator = by_name(&args.integrator, &settings)?;
+    let plan = integrator.plan(&entry);
+    let schedule = schedule(args, integrator.as_ref(), &plan)?;
+    let mut film = Film::new(
+        entry.camera.width,
+        entry.camera.height,
+        entry.kind.classes(),
+    );
+    let per_iteration = args
+        .paths_per_iteration
+        .unwrap_or_else(|| paths_per_iteration(film.pixels()));
+    let most = per_iteration.saturating_mul(1 << 32);
+    if args.paths > most {
+        return Err(refused(
+            "paths",
+            args.paths,
+            &format!("at most {most}: 2^32 iterations"),
+        ));
+    }
+    if plan.iter().all(|c| c.treatment == Treatment::NotSampled) {
+        super::print(&format!(
+            "{} samples no path class of {}:",
+            integrator.name(),
+            entry.name
+        ));
+        for class in &plan {
+            super::print(&format!(
+                "  {:<6} {}",
+                class.class.to_string(),
+                class.reason
+            ));
+        }
+        return Ok(exit::NOTHING_RAN);
+    }
+
+    let bar = progress(args.paths);
+    accumulate(
+        integrator.prepare(&entry).as_ref(),
+        &schedule,
+        args.seed,
+        args.paths,
+        per_iteration,
+        &mut film,
+        |paths| bar.set_position(paths),
+    );
+    bar.finish_and_clear();
+    write(
+        args,
+        &entry,
+        integrator.as_ref(),
+        &plan,
+        &mut film,
+        &schedule,
+        per_iteration,
+    )?;
+    Ok(exit::PASS)
+}
+
+/// Writes the image of the classes that are sampled, and prints their means.
+fn write(
+    args: &Args,
+    entry: &nephroid_analytic::scene::Entry,
+    integrator: &dyn Integrator,
+    plan: &Plan,
+    film: &mut Film,
+    schedule: &Schedule,
+    per_iteration: u64,
+) -> Result<(), Error> {
+    let means = film.class_means();
+    let scale = 1.0 / film.paths as f64;
+    film.layers.iter_mut().flatten().for_each(|v| *v *= scale);
+    let sampled = || {
+        plan.iter()
+            .enumerate()
+            .filter(|(_, c)| c.treatment != Treatment::NotSampled)
+    };
+    let layers: Vec<_> = sampled()
+        .map(|(k, c)| (format!("{}.Y", c.class), film.layers[k].as_slice()))
+        .collect();
+    let mut attributes = metadata(entry);
+    let more = [
+        ("integrator", integrator.name().to_owned()),
+        ("paths", film.paths.to_string()),
+        ("paths-per-iteration", per_iteration.to_string()),
+        ("seed", args.seed.to_string()),
+        ("schedule", schedule.to_string()),
+        (
+            "kernel",
+            args.kernel.map_or("default".to_owned(), |k| k.to_string()),
+        ),
+    ];
+    attributes.extend(more.map(|(key, value)| (format!("nephroid:{key}"), value)));
+    write_exr(&args.output, film.width, film.height, &layers, &attributes)?;
+    super::print(&format!(
+        "{}: {}×{} pixels, {} paths, mean radiance in W/(m² sr)",
+        args.output.display(),
+        film.width,
+        film.height,
+        film.paths
+    ));
+    for (k, class) in sampled() {
+        let how = match class.treatment {
+            Treatment::Regularized(_) => format!("regularized, bandwidth {schedule}"),
+            _ => "exact".to_owned(),
+        };
+        super::print(&format!(
+            "  {:<6} {:.6e}  {} contributions, {how}",
+            class.class.to_string(),
+            means[k],
+            film.nonzero[k]
+        ));
+    }
+    Ok(())
+}
+
+/// The schedule, within the range of what it is a bandwidth of.
+fn schedule(args: &Args, integrator: &dyn Integrator, plan: &Plan) -> Result<Schedule, Error> {
+    let key = if args.schedule.is_some() {
+        "schedule"
+    } else {
+        "bandwidth"
+    };
+    let schedule = match &args.schedule {
+        Some(text) => text
+            .parse()
+            .map_err(|allowed: String| refused(key, text, &allowed))?,
+        None => integrator.schedule(args.bandwidth.unwrap_or(DEFAULT_BANDWIDTH)),
+    };
+    let is_angle = plan
+        .iter()
+        .any(|c| c.treatment == Treatment::Regularized(Technique::Camera));
+    let (most, allowed) = if is_angle {
+        (
+            core::f64::consts::PI,
+            "an angle greater than 0, at most π [rad]",
+        )
+    } else {
+        (1e9, "a radius greater than 0, at most 1e9 [m]")
+    };
+    match schedule.values().iter().find(|&&v| !(v > 0.0 && v <= most)) {
+        Some(bad) => Err(refused(key, bad, allowed)),
+        None => Ok(schedule),
+    }
+}
+
+fn refused(key: &str, found: impl std::fmt::Display, allowed: &str) -> Error {
+    Error::Parameter {
+        file: "command line".to_owned(),
+        key: format!("--{key}"),
+        found: found.to_string(),
+        allowed: allowed.to_owned(),
+    }
+}
+
+/// A progress bar, on a terminal only.
+fn progress(paths: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(paths);
+    if let Ok(style) =
+        ProgressStyle::with_template("{wide_bar} {percent} % of {len} paths, {eta} left")
+    {
+        bar.set_style(style);
+    }
+    bar
+}

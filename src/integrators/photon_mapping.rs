@@ -1,0 +1,217 @@
+//! What `pm` and `ppm` do in an iteration: photons that came through the specular surface, merged with camera paths at
+//! their first diffuse vertex.
+//!
+//! Light that reaches the floor directly is sampled by next event estimation, never merged, so in a scene without a
+//! specular surface the radius changes no bit. An iteration of N paths is N photons and N camera paths, in maps of at
+//! most [`MAP`] photons each, so that memory and the cost of a path are constant. Photons are uniform over the sphere of
+//! a point light (a cross-section of a directional beam that covers the mirror); one that lands in X adds
+//! Φ k(|X - x|)/N to the irradiance at x, in which the cosine is already.
+
+use multiversion::multiversion;
+use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::Entry;
+
+use crate::film::Film;
+use crate::geometry::emission::Emitter;
+use crate::geometry::light::Light;
+use crate::geometry::scene::{Compiled, Scene};
+use crate::geometry::specular::Specular;
+use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
+
+use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
+use super::kernel::{Kernel, RadiusKernel};
+use super::photon_grid::{PhotonGrid, Photons};
+use super::plan::{next_event_plan, plan_of};
+use super::settings::{Defect, Settings};
+use super::{ClassPlan, Plan, Prepared, Technique, Treatment};
+
+/// Photons in a map, at most.
+pub const MAP: u64 = 1 << 16;
+
+pub(super) fn kernel_of(settings: &Settings) -> Kernel {
+    settings.kernel.unwrap_or(Kernel::Disc)
+}
+
+pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
+    plan_of(entry, |class: PathClass| {
+        next_event_plan(class).unwrap_or_else(|| ClassPlan {
+            class,
+            treatment: Treatment::Regularized(Technique::Merge),
+            reason: format!(
+                "irregular: light and specular vertex are both singular; merged with photons that came through the \
+                 specular surface, {kernel} kernel on the distance on the floor"
+            ),
+        })
+    })
+}
+
+pub(super) fn prepare(entry: &Entry, settings: &Settings) -> Box<dyn Prepared> {
+    let defect = Defect::new(settings.fault);
+    match Compiled::new(entry, defect.overrides()) {
+        Compiled::Diffuse(scene) => prepared(scene, settings, defect),
+        Compiled::PlanarMirror(scene) => prepared(scene, settings, defect),
+        Compiled::CylinderCup(scene) => prepared(scene, settings, defect),
+        Compiled::FlatInterface(scene) => prepared(scene, settings, defect),
+    }
+}
+
+fn prepared<L: Light, S: Specular>(
+    scene: Scene<L, S>,
+    settings: &Settings,
+    defect: Defect,
+) -> Box<dyn Prepared> {
+    let emitter = scene.light.unaimed(&scene.surface.hull());
+    Box::new(PhotonMapping {
+        scene,
+        emitter,
+        settings: *settings,
+        defect,
+    })
+}
+
+struct PhotonMapping<L: Light, S> {
+    scene: Scene<L, S>,
+    emitter: L::Emitter,
+    settings: Settings,
+    defect: Defect,
+}
+
+/// Memory of an iteration.
+struct Work {
+    photons: Photons,
+    grid: PhotonGrid,
+    paths: CameraPaths,
+    value: Lanes,
+    u: Lanes,
+    v: Lanes,
+}
+
+impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
+    fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
+        film.paths += paths;
+        let stream = Stream::new(seed, iteration);
+        let kernel = RadiusKernel::new(kernel_of(&self.settings), bandwidth, self.settings.fault);
+        let mut work = Work {
+            photons: Photons::default(),
+            grid: PhotonGrid::default(),
+            paths: CameraPaths::new(),
+            value: zeros(),
+            u: zeros(),
+            v: zeros(),
+        };
+        for start in (0..paths).step_by(MAP as usize) {
+            let end = paths.min(start + MAP);
+            let blocks = || {
+                (start..end)
+                    .step_by(BLOCK)
+                    .map(move |first| (first, (end - first).min(BLOCK as u64) as usize))
+            };
+            if S::EXISTS {
+                work.photons.clear();
+                for (first, live) in blocks() {
+                    emit(
+                        &self.scene,
+                        &self.emitter,
+                        &self.defect,
+                        &stream,
+                        first,
+                        live,
+                        &mut work,
+                    );
+                }
+                work.grid.build(&work.photons, kernel.radius);
+            }
+            let norm = kernel.norm * self.emitter.flux() / (end - start) as f64;
+            for (first, live) in blocks() {
+                trace(
+                    &self.scene,
+                    &self.defect,
+                    &stream,
+                    &kernel,
+                    norm,
+                    first,
+                    live,
+                    &mut work,
+                    film,
+                );
+            }
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn emit<L: Light, S: Specular>(
+    scene: &Scene<L, S>,
+    emitter: &L::Emitter,
+    defect: &Defect,
+    stream: &Stream,
+    first: u64,
+    live: usize,
+    work: &mut Work,
+) {
+    let Work {
+        photons,
+        u,
+        v,
+        value,
+        ..
+    } = work;
+    stream.pairs(first, Dimension::Emission, u, v);
+    for i in 0..BLOCK {
+        let (origin, direction) = emitter.ray(u[i], v[i]);
+        let landing = scene.landing(origin, direction);
+        let weight = landing.weight * defect.beside_cosine(landing.cosine);
+        u[i] = landing.x;
+        v[i] = landing.y;
+        value[i] = if landing.via & (landing.weight > 0.0) {
+            weight
+        } else {
+            0.0
+        };
+    }
+    value[live..].fill(0.0);
+    let mut list = [0_u16; BLOCK];
+    let n = select(&mut list, |i| value[i] > 0.0);
+    for &i in &list[..n] {
+        let i = usize::from(i);
+        photons.push(u[i], v[i], value[i]);
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn trace<L: Light, S: Specular>(
+    scene: &Scene<L, S>,
+    defect: &Defect,
+    stream: &Stream,
+    kernel: &RadiusKernel,
+    norm: f64,
+    first: u64,
+    live: usize,
+    work: &mut Work,
+    film: &mut Film,
+) {
+    let Work {
+        grid, paths, value, ..
+    } = work;
+    paths.draw(scene, stream, first, live);
+    if !S::SEPARATES {
+        paths.next_event(scene, defect, value);
+        paths.splat(film, DIRECT, value);
+    }
+    if S::EXISTS {
+        let scale = CAUSTIC.map(|class| norm * scene.floor.bsdf * defect.class_scale(class));
+        let mut list = [0_u16; BLOCK];
+        let n = select(&mut list, |i| paths.weight[i] > 0.0);
+        *value = zeros();
+        for &i in &list[..n] {
+            let i = usize::from(i);
+            let scale = if paths.via[i] > 0.5 {
+                scale[1]
+            } else {
+                scale[0]
+            };
+            value[i] = paths.weight[i] * scale * grid.gather(paths.x[i], paths.y[i], kernel);
+        }
+        paths.splat(film, CAUSTIC, value);
+    }
+}

@@ -1,0 +1,47 @@
+//! `ppm`: progressive photon mapping, probabilistic [Knaus & Zwicker 2011]: independent iterations of photon mapping
+//! whose radius shrinks by r²ᵢ₊₁ = r²ᵢ (i + a)/(i + 1), a = 2/3. See [`super::photon_mapping`] for an iteration, which
+//! is given its radius; the sequence is in [`Integrator::schedule`].
+
+use nephroid_analytic::scene::Entry;
+
+use super::photon_mapping::{kernel_of, merging_plan, prepare};
+use super::schedule::{DEFAULT_REDUCTION, Schedule};
+use super::settings::Settings;
+use super::{Integrator, Plan, Prepared};
+
+/// Progressive photon mapping.
+pub struct Ppm {
+    settings: Settings,
+}
+
+impl Ppm {
+    /// The method, with a disc unless the settings name another kernel on the distance.
+    pub fn new(settings: Settings) -> Self {
+        Ppm { settings }
+    }
+}
+
+impl Integrator for Ppm {
+    fn name(&self) -> &'static str {
+        "ppm"
+    }
+
+    fn title(&self) -> &'static str {
+        "progressive photon mapping: the radius shrinks from iteration to iteration"
+    }
+
+    fn plan(&self, entry: &Entry) -> Plan {
+        merging_plan(entry, kernel_of(&self.settings))
+    }
+
+    fn schedule(&self, bandwidth: f64) -> Schedule {
+        Schedule::Progressive {
+            first: bandwidth,
+            reduction: DEFAULT_REDUCTION,
+        }
+    }
+
+    fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
+        prepare(entry, &self.settings)
+    }
+}
