@@ -7,7 +7,6 @@ pub mod evaluate;
 pub mod exit;
 pub mod expectation;
 pub mod exr_output;
-pub mod expectation;
 pub mod film;
 pub mod geometry;
 pub mod integrators;
