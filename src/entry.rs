@@ -99,13 +99,97 @@ entry_file!(
     }
 );
 
+/// What each key of an entry may be: the help beside a missing key or a value of the wrong type. The exact bounds that
+/// depend on other keys come from [`Entry::validate`].
+const ALLOWED: [(&str, &str); 24] = [
+    (
+        "name",
+        "a string of 1 to 64 lower-case letters, digits and hyphens",
+    ),
+    ("title", "a string"),
+    ("kind", KINDS),
+    (
+        "camera",
+        "a table with position, look_at, field_of_view_degrees, width and height",
+    ),
+    (
+        "light",
+        "a table: position and intensity (point), or elevation_degrees and irradiance (directional)",
+    ),
+    (
+        "floor",
+        "a table with half_width and albedo, and center if it is not [0, 0]",
+    ),
+    (
+        "mirror",
+        "a table with center, normal, edge, half_width, half_height and reflectance",
+    ),
+    (
+        "wall",
+        "a table with radius, height, half_arc_degrees and reflectance",
+    ),
+    ("water", "a table with surface_z and index"),
+    ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
+    ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
+    (
+        "center",
+        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor",
+    ),
+    ("normal", "three finite numbers: a direction of any length"),
+    (
+        "edge",
+        "three finite numbers: a direction perpendicular to normal",
+    ),
+    (
+        "half_width",
+        "finite numbers from 1e-9 to 1e9 (metres): one for a mirror, two for a floor",
+    ),
+    ("half_height", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("radius", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("intensity", "a finite number from 1e-9 to 1e9 (W/sr)"),
+    ("irradiance", "a finite number from 1e-9 to 1e9 (W/m²)"),
+    ("elevation_degrees", "a finite number from 1 to 85"),
+    (
+        "half_arc_degrees",
+        "a finite number greater than 0, at most 60",
+    ),
+    ("field_of_view_degrees", "a finite number from 0.1 to 150"),
+    ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("index", "a finite number greater than 1, at most 10"),
+];
+
+/// Allowed values of a key that a TOML error is about, or nothing if the error is about something else.
+fn allowed(error: &toml::de::Error, line: &str) -> Option<&'static str> {
+    let missing = error
+        .message()
+        .strip_prefix("missing field `")
+        .and_then(|m| m.split('`').next());
+    let key = missing.unwrap_or_else(|| line.split('=').next().unwrap_or_default().trim());
+    match key {
+        "albedo" | "reflectance" => Some("a finite number greater than 0, at most 1"),
+        "width" | "height" if missing.is_none() => {
+            Some("a whole number from 1 to 8192 (pixels), or metres for a wall")
+        }
+        "width" => Some("a whole number from 1 to 8192"),
+        "height" => {
+            Some("a whole number from 1 to 8192 (camera), or a finite number of metres (wall)")
+        }
+        key => ALLOWED
+            .iter()
+            .find(|(k, _)| *k == key)
+            .map(|(_, allowed)| *allowed),
+    }
+}
+
+const KINDS: &str = "one of \"diffuse\", \"planar-mirror\", \"cylinder-cup\", \"flat-interface\"";
+
 /// Reads and validates an entry.
 ///
 /// # Errors
 /// [`Error::Toml`] for a syntax error, an unknown or missing key or a value of the wrong type;
 /// [`Error::Parameter`] for a value out of range or not finite. Both name the file, the key and what is allowed.
 pub fn from_toml(file: &str, text: &str) -> Result<Entry, Error> {
-    let syntax = |e: toml::de::Error| Error::toml(file, text, &e);
+    let syntax = |e: toml::de::Error| Error::toml(file, text, &e, |line| allowed(&e, line));
     let kind = toml::from_str::<KindOnly>(text).map_err(syntax)?.kind;
     let parameter = |key: &str, found: String, allowed: &str| Error::Parameter {
         file: file.to_owned(),

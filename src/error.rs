@@ -84,8 +84,13 @@ impl Error {
         }
     }
 
-    /// Turns a TOML error into file, line and column.
-    pub fn toml(file: &str, text: &str, error: &toml::de::Error) -> Self {
+    /// Turns a TOML error into file, line and column; `allowed` says what the line's key may be, where that is known.
+    pub fn toml(
+        file: &str,
+        text: &str,
+        error: &toml::de::Error,
+        allowed: impl FnOnce(&str) -> Option<&'static str>,
+    ) -> Self {
         let start = error.span().map_or(0, |s| s.start).min(text.len());
         let before = text.get(..start).unwrap_or_default();
         let line = before.matches('\n').count() + 1;
@@ -102,7 +107,10 @@ impl Error {
             line,
             column,
             message: error.message().to_owned(),
-            help: format!("the line reads: {shown}"),
+            help: match allowed(shown) {
+                Some(allowed) => format!("allowed: {allowed}"),
+                None => format!("the line reads: {shown}"),
+            },
         }
     }
 }

@@ -3,12 +3,17 @@
 pub mod cli;
 pub mod entry;
 pub mod error;
+pub mod evaluate;
 pub mod exit;
+pub mod expectation;
 pub mod exr_output;
 pub mod film;
 pub mod geometry;
 pub mod integrators;
+pub mod judge;
 pub mod output;
 pub mod png_output;
+pub mod report;
 pub mod stream;
 pub mod truth;
+pub mod verify;

@@ -3,9 +3,15 @@
 //! This crate holds closed forms and exact expectations. It knows nothing of how light is sampled: it never imports an
 //! integrator, a ray tracer or a random number generator, and it does no I/O.
 
+pub mod bandwidth;
 pub mod camera;
 pub mod class;
+mod double_double;
+pub mod kinds;
+pub mod optics;
 pub mod pixel;
+pub mod quadrature;
+pub mod roots;
 pub mod scalar;
 pub mod scene;
 mod validate;

@@ -1,8 +1,12 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod evaluate;
+mod explain;
 mod list;
+mod probe;
 mod render;
 mod run;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -25,7 +29,11 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Verify(verify::Args),
     List(list::Args),
+    Evaluate(evaluate::Args),
+    Probe(probe::Args),
+    Explain(explain::Args),
     Render(render::Args),
     Run(run::Args),
 }
@@ -35,7 +43,11 @@ pub fn main() -> ExitCode {
     // A usage error exits with 2 through clap itself; --help and --version with 0.
     let cli = Cli::parse();
     let result = match cli.command {
+        Command::Verify(args) => verify::run(&args),
         Command::List(args) => list::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+        Command::Probe(args) => probe::run(&args),
+        Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
     };

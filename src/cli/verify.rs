@@ -1,0 +1,198 @@
+//! `nephroid verify`: run integrators against exact truths and print verdicts.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::error::Error;
+use crate::integrators::{Integrator, Kernel, NAMES, Settings, by_name};
+use crate::judge::hypotheses::LEVEL;
+use crate::output::write_text;
+use crate::report;
+use crate::verify::effort::{BANDWIDTH, Effort};
+use crate::verify::run::{self, Request};
+use crate::verify::suite::{Coverage, LeftOut, Subject};
+use crate::{entry, exit};
+
+/// Judge the reference integrators against exact truths.
+///
+/// Each pair of scene and integrator is run as independent replicates; the mean radiance of each path class over the
+/// image is compared with its closed form, or with the exact expectation at the bandwidth where the integrator
+/// regularizes. "equivalent": within the margin. "different": a bias is established. "undecided": neither.
+///
+/// Without --scene and --integrator, `--effort quick` runs a covering subset and the others run everything; with one of
+/// them, exactly what it names is run. Exit codes: 0 all equivalent, 1 something is different, 2 bad usage, 3 something is
+/// undecided, 4 nothing was judged.
+#[derive(clap::Args)]
+pub struct Args {
+    /// A name from `nephroid list`, or a TOML file. May be repeated.
+    #[arg(long = "scene", value_name = "SCENE")]
+    scenes: Vec<String>,
+    /// The short name of an integrator. May be repeated.
+    #[arg(long = "integrator", value_name = "NAME")]
+    integrators: Vec<String>,
+    /// Seed: the same seed gives the same verdicts, on any number of threads.
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    seed: u64,
+    /// How much to do: quick (margin 2 %), standard (1 %) or thorough (0.5 %, no time limit).
+    #[arg(long, default_value_t = Effort::Quick)]
+    effort: Effort,
+    /// Equivalence margin relative to the truth, 1e-4 to 0.5. Default: the effort's.
+    #[arg(long, value_name = "M", value_parser = margin)]
+    margin: Option<f64>,
+    /// Probability that all of it together gives any false "different", 1e-15 to 0.1.
+    #[arg(long, value_name = "P", default_value_t = LEVEL, value_parser = level)]
+    level: f64,
+    /// Angle [rad] or radius [m] of the mollifiers of regularizing integrators.
+    #[arg(long, value_name = "A", default_value_t = BANDWIDTH, value_parser = bandwidth)]
+    bandwidth: f64,
+    /// Mollifier: cone, epanechnikov or vmf for an angle, disc or epanechnikov for a radius. Default: cone, disc.
+    #[arg(long, value_name = "K")]
+    kernel: Option<Kernel>,
+    /// Share the error probabilities among at least this many checks. Only the commands that reproduce a verdict need
+    /// it.
+    #[arg(long, value_name = "N", value_parser = super::count)]
+    checks: Option<u64>,
+    /// Write a summary to DIR/verify.md.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Write JSON to a file, or to standard output (then nothing else is printed there).
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+    /// Write JUnit XML to a file.
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+}
+
+fn in_range(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|v| (low..=high).contains(v))
+        .ok_or_else(|| format!("expected a number from {low:e} to {high:e}"))
+}
+
+fn margin(text: &str) -> Result<f64, String> {
+    in_range(text, 1e-4, 0.5)
+}
+
+fn level(text: &str) -> Result<f64, String> {
+    in_range(text, 1e-15, 0.1)
+}
+
+fn bandwidth(text: &str) -> Result<f64, String> {
+    in_range(text, 1e-7, 1e6)
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<u8, Error> {
+    let request = request(args)?;
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {pos}/{len} {msg} ({elapsed})") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let outcome = run::run(&request, &|position, of, scene, integrator| {
+        bar.set_length(of as u64);
+        bar.set_position(position as u64);
+        bar.set_message(format!("{scene} {integrator}"));
+    });
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    let json = format!("{:#}\n", report::json::outcome(&outcome));
+    match &args.json {
+        Some(file) if file == Path::new("-") => super::print(json.trim_end()),
+        Some(file) => write_text(file, &json)?,
+        None => {}
+    }
+    if args.json.as_deref() != Some(Path::new("-")) {
+        super::print(&report::text::outcome(&outcome));
+    }
+    if let Some(file) = &args.junit {
+        let xml = report::junit::outcome(&outcome).map_err(|message| Error::Content {
+            file: file.display().to_string(),
+            message,
+            help: "scene names of printable characters".to_owned(),
+        })?;
+        write_text(file, &xml)?;
+    }
+    if let Some(directory) = &args.report {
+        std::fs::create_dir_all(directory)
+            .map_err(|e| Error::read(&directory.display().to_string(), e))?;
+        write_text(
+            &directory.join("verify.md"),
+            &report::markdown::outcome(&outcome),
+        )?;
+    }
+    if outcome.verdicts.is_empty() {
+        return Ok(exit::NOTHING_RAN);
+    }
+    Ok(outcome.exit_code())
+}
+
+fn request(args: &Args) -> Result<Request, Error> {
+    let explicit = !args.scenes.is_empty() || !args.integrators.is_empty();
+    let scenes = match args.scenes.as_slice() {
+        [] => entry::names().map(str::to_owned).collect(),
+        named => once_each(named),
+    };
+    let subject = |argument: String| {
+        let entry = entry::load(&argument)?;
+        Ok(Subject { argument, entry })
+    };
+    let scenes = scenes.into_iter().map(subject);
+    let (integrators, left_out) = integrators(args)?;
+    Ok(Request {
+        scenes: scenes.collect::<Result<_, Error>>()?,
+        integrators,
+        left_out,
+        effort: args.effort,
+        coverage: if args.effort == Effort::Quick && !explicit {
+            Coverage::Covering
+        } else {
+            Coverage::Everything
+        },
+        margin: args.margin.unwrap_or(args.effort.margin()),
+        level: args.level,
+        checks: args.checks,
+        seed: args.seed,
+        bandwidth: args.bandwidth,
+        kernel: args.kernel,
+    })
+}
+
+type Integrators = Vec<Box<dyn Integrator>>;
+
+/// Those named; or all, without those that do not take the kernel.
+fn integrators(args: &Args) -> Result<(Integrators, Vec<LeftOut>), Error> {
+    let settings = Settings {
+        kernel: args.kernel,
+        ..Settings::default()
+    };
+    let named = once_each(&args.integrators);
+    if !named.is_empty() {
+        let integrators = named.iter().map(|name| by_name(name, &settings));
+        return Ok((integrators.collect::<Result<_, _>>()?, Vec::new()));
+    }
+    let (mut integrators, mut left_out) = (Vec::new(), Vec::new());
+    for name in NAMES {
+        match by_name(name, &settings) {
+            Ok(integrator) => integrators.push(integrator),
+            Err(error) => left_out.push(LeftOut {
+                integrator: name.to_owned(),
+                reason: error.to_string(),
+            }),
+        }
+    }
+    Ok((integrators, left_out))
+}
+
+fn once_each(names: &[String]) -> Vec<String> {
+    let mut seen = Vec::new();
+    for name in names {
+        if !seen.contains(name) {
+            seen.push(name.clone());
+        }
+    }
+    seen
+}

@@ -1,0 +1,56 @@
+//! The two questions that are asked of a sample, and how the probability of a wrong answer is shared.
+//!
+//! With mean m, standard error s, R replicates and a truth T known to ± e (all t with R - 1 degrees of freedom):
+//!
+//! - *Different*: null hypothesis E m = T' for some T' in [T - e, T + e]. p = 2 P(T > (|m - T| - e) / s).
+//! - *Equivalent* [Schuirmann 1987], two one-sided tests: null hypothesis |E m - T'| ≥ μ T' for margin μ, for some T' in the
+//!   same interval. p is the larger of P(T > (m - (T + e)(1 - μ)) / s) and P(T > ((T - e)(1 + μ) - m) / s).
+//!
+//! Both are worst cases over where the truth can be, so the error probabilities hold whatever it is. They rest on means
+//! of replicates being close to normal; [`super::evidence`] says when they are taken to be.
+
+use nephroid_analytic::camera::Bounded;
+
+use super::distributions::student_survival;
+use super::evidence::Sample;
+
+/// Probability that a suite of verdicts on correct integrators contains any false "different", by default.
+pub const LEVEL: f64 = 1e-6;
+/// Probability that a suite contains any false "equivalent".
+pub const EQUIVALENCE_LEVEL: f64 = 1e-3;
+
+/// The error probabilities of one check: its share of those of the whole suite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Of a false "different".
+    pub different: f64,
+    /// Of a false "equivalent".
+    pub equivalent: f64,
+}
+
+impl Levels {
+    /// Shares the error probabilities of a suite equally (Bonferroni: valid under any dependence) among its checks.
+    pub fn shared(different: f64, equivalent: f64, checks: u64) -> Self {
+        let checks = checks.max(1) as f64;
+        Levels {
+            different: different / checks,
+            equivalent: equivalent / checks,
+        }
+    }
+}
+
+/// p-value of "different", two-sided. 1 inside the truth's bounds.
+pub fn difference_p(sample: &Sample, truth: Bounded) -> f64 {
+    let distance = (sample.mean - truth.value).abs() - truth.error;
+    if distance <= 0.0 {
+        return 1.0;
+    }
+    2.0 * student_survival(distance / sample.standard_error(), sample.dof())
+}
+
+/// p-value of "equivalent" for a margin relative to the truth.
+pub fn equivalence_p(sample: &Sample, truth: Bounded, margin: f64) -> f64 {
+    let above = sample.mean - (truth.value + truth.error) * (1.0 - margin);
+    let below = (truth.value - truth.error) * (1.0 + margin) - sample.mean;
+    student_survival(above.min(below) / sample.standard_error(), sample.dof())
+}

@@ -1,0 +1,57 @@
+//! For continuous integration: JUnit XML, a suite per scene, a case per check, with ids that do not change from run to
+//! run.
+
+use core::time::Duration;
+
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+use super::text;
+use crate::judge::verdict::State;
+use crate::verify::verdicts::{Outcome, Verdict};
+
+/// The whole answer.
+///
+/// # Errors
+/// What the XML writer says.
+pub fn outcome(o: &Outcome) -> Result<String, String> {
+    let mut report = Report::new("nephroid verify");
+    report.set_time(duration(o.seconds));
+    let mut suites: Vec<TestSuite> = Vec::new();
+    let mut scene = None;
+    for v in &o.verdicts {
+        if scene.replace(v.scene.as_str()) != Some(v.scene.as_str()) {
+            suites.push(TestSuite::new(v.scene.as_str()));
+        }
+        if let Some(suite) = suites.last_mut() {
+            suite.add_test_case(case(v));
+        }
+    }
+    report.add_test_suites(suites);
+    report.to_string().map_err(|e| e.to_string())
+}
+
+fn case(v: &Verdict) -> TestCase {
+    let f = &v.finding;
+    let mut status = match f.state {
+        State::Equivalent => TestCaseStatus::success(),
+        State::Different => TestCaseStatus::non_success(NonSuccessKind::Failure),
+        State::Undecided | State::Unreadable => TestCaseStatus::non_success(NonSuccessKind::Error),
+        State::NotSampled | State::NotComparable => TestCaseStatus::skipped(),
+    };
+    let bias = text::bias(f).map_or(String::new(), |b| format!("bias {b}"));
+    let parts = [f.state.word(), &bias, &f.reason];
+    let parts: Vec<_> = parts.into_iter().filter(|p| !p.is_empty()).collect();
+    status.set_message(parts.join("; "));
+    if f.state != State::Equivalent {
+        status.set_type(f.state.word());
+        status.set_description(format!("again: {}", v.command));
+    }
+    let mut case = TestCase::new(format!("{}/{}/{}", v.integrator, v.class, v.region), status);
+    case.set_classname(v.scene.as_str())
+        .set_time(duration(v.seconds));
+    case
+}
+
+fn duration(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
+}

@@ -1,0 +1,49 @@
+//! For a reviewer: one Markdown file.
+
+use core::fmt::Write as _;
+
+use super::text;
+use crate::verify::verdicts::Outcome;
+
+/// The whole answer.
+pub fn outcome(o: &Outcome) -> String {
+    let mut page = String::from("# nephroid verify\n\n");
+    for line in text::summary(o).lines() {
+        let _ = writeln!(page, "{line}  ");
+    }
+    page.push_str(
+        "\n| scene | integrator | class | verdict | bias | detectable | paths | why |\n\
+         | --- | --- | --- | --- | ---: | ---: | ---: | --- |\n",
+    );
+    for v in &o.verdicts {
+        let f = &v.finding;
+        let detectable = f
+            .minimum_detectable_bias
+            .map_or(String::new(), |b| format!("{:.2} %", 100.0 * b));
+        let _ = writeln!(
+            page,
+            "| {} | {} | {} | {} | {} | {detectable} | {:.1e} | {} |",
+            v.scene,
+            v.integrator,
+            v.class,
+            f.state.word(),
+            text::bias(f).unwrap_or_default(),
+            v.paths as f64,
+            f.reason
+        );
+    }
+    if !o.not_run.is_empty() {
+        page.push_str("\n## Not run\n\n");
+    }
+    for line in text::grouped(&o.not_run) {
+        let _ = writeln!(page, "- {line}");
+    }
+    let mut commands: Vec<_> = o.verdicts.iter().map(|v| &v.command).collect();
+    commands.dedup();
+    page.push_str("\n## To reproduce\n\n```\n");
+    for command in commands {
+        let _ = writeln!(page, "{command}");
+    }
+    page.push_str("```\n");
+    page
+}

@@ -1,0 +1,167 @@
+//! For a person at a terminal: one line per verdict, within 110 columns, and a summary that says how sure it is.
+
+use core::fmt::Write as _;
+
+use crate::judge::verdict::{Finding, State};
+use crate::verify::verdicts::{NotRun, Outcome, Verdict};
+
+/// The whole answer, without a final newline.
+pub fn outcome(outcome: &Outcome) -> String {
+    let mut text = format!("{HEAD}\n");
+    let mut previous = None;
+    for v in &outcome.verdicts {
+        let pair = (v.scene.as_str(), v.integrator.as_str());
+        let first = previous.replace(pair) != Some(pair);
+        let _ = writeln!(text, "{}", line(v, first));
+        for detail in details(v) {
+            let _ = writeln!(text, "    {detail}");
+        }
+    }
+    for not_run in grouped(&outcome.not_run) {
+        let _ = writeln!(text, "not run: {not_run}");
+    }
+    let _ = write!(text, "\n{}", summary(outcome));
+    text
+}
+
+const HEAD: &str = "scene        integrator class  verdict          bias ± interval     detects   power    paths  seconds";
+
+/// One verdict; `first` of its pair of scene and integrator, and thus the one that shows the time.
+pub fn line(v: &Verdict, first: bool) -> String {
+    let f = &v.finding;
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+    let paths = (v.paths > 0).then(|| format!("{:.1e}", v.paths as f64));
+    let seconds = (first && v.paths > 0).then(|| format!("{:.1}", v.seconds));
+    format!(
+        "{:<12} {:<10} {:<6} {:<14} {:>20} {:>11} {:>7} {:>8} {:>8}",
+        v.scene,
+        v.integrator,
+        v.class,
+        f.state.word(),
+        or_dash(bias(f)),
+        or_dash(
+            f.minimum_detectable_bias
+                .map(|b| format!("{:.2} %", 100.0 * b))
+        ),
+        or_dash(f.power.map(power)),
+        or_dash(paths),
+        seconds.unwrap_or_default(),
+    )
+    .trim_end()
+    .to_owned()
+}
+
+/// Effect and half width of its interval.
+pub fn bias(f: &Finding) -> Option<String> {
+    let effect = 100.0 * f.effect?;
+    Some(match f.interval {
+        Some([low, high]) => format!("{effect:+.2} % ± {:.2} %", 50.0 * (high - low)),
+        None => format!("{effect:+.2} %"),
+    })
+}
+
+/// Rounded down, so that 1 is never claimed.
+fn power(power: f64) -> String {
+    if power > 0.999 {
+        ">0.999".to_owned()
+    } else {
+        format!("{:.3}", (1e3 * power).floor() / 1e3)
+    }
+}
+
+/// Why, and what to do about it, where the line does not say it all.
+fn details(v: &Verdict) -> Vec<String> {
+    let f = &v.finding;
+    let mut lines = Vec::new();
+    let telling = matches!(
+        f.state,
+        State::Different | State::Undecided | State::NotComparable
+    );
+    let unbiased = f.state == State::Equivalent && !f.bias_established;
+    if !f.reason.is_empty() && !unbiased && f.state != State::NotSampled {
+        lines.push(f.reason.clone());
+    }
+    if let (State::Different, Some(p), Some(mean), Some(truth)) =
+        (f.state, f.p_different, v.mean, v.truth)
+    {
+        lines.push(format!(
+            "mean {mean:.6e}, should be {:.6e} W/(m² sr); p = {p:.1e}, level {:.1e}",
+            truth.value, v.levels.different
+        ));
+    }
+    if let Some(paths) = v.paths_needed {
+        lines.push(format!("about {:.1e} paths would decide", paths as f64));
+    }
+    if telling {
+        lines.push(format!("again: {}", v.command));
+    }
+    lines
+}
+
+/// Pairs that were left out for the same reason, one line for each reason.
+pub fn grouped(not_run: &[NotRun]) -> Vec<String> {
+    let mut reasons: Vec<&str> = not_run.iter().map(|n| n.reason.as_str()).collect();
+    let mut seen = Vec::new();
+    reasons.retain(|r| {
+        !seen.contains(r) && {
+            seen.push(*r);
+            true
+        }
+    });
+    reasons
+        .into_iter()
+        .map(|r| format!("{}: {r}", pairs_with(not_run, r)))
+        .collect()
+}
+
+/// `floor with pt, lt; cup with pm`.
+fn pairs_with(not_run: &[NotRun], reason: &str) -> String {
+    let mut text = String::new();
+    let mut scene = None;
+    for n in not_run.iter().filter(|n| n.reason == reason) {
+        if scene.replace(&n.scene) == Some(&n.scene) {
+            let _ = write!(text, ", {}", n.integrator);
+        } else {
+            let separator = if text.is_empty() { "" } else { "; " };
+            let _ = write!(text, "{separator}{} with {}", n.scene, n.integrator);
+        }
+    }
+    text
+}
+
+/// How many of each, and what the error probabilities are.
+pub fn summary(o: &Outcome) -> String {
+    const STATES: [State; 6] = [
+        State::Equivalent,
+        State::Different,
+        State::Undecided,
+        State::NotSampled,
+        State::NotComparable,
+        State::Unreadable,
+    ];
+    let count = |s: State| o.verdicts.iter().filter(|v| v.finding.state == s).count();
+    let counts: Vec<_> = STATES
+        .into_iter()
+        .filter(|&s| count(s) > 0 || s == State::Equivalent)
+        .map(|s| format!("{} {}", count(s), s.word()))
+        .collect();
+    format!(
+        "{}. Effort {}, α = r = {}, seed {}, {:.1} s.\n\
+         Equivalent: within {} of the truth; a suite says so falsely with probability at most {:e}.\n\
+         Different: a suite of correct integrators says so with probability at most {:e} ({} checks share it).",
+        counts.join(", "),
+        o.effort,
+        o.bandwidth,
+        o.seed,
+        o.seconds,
+        percent(o.margin),
+        o.equivalence_level,
+        o.level,
+        o.checks,
+    )
+}
+
+fn percent(fraction: f64) -> String {
+    // Through f32, so that 100 × 0.07 does not show its rounding.
+    format!("{} %", (100.0 * fraction) as f32)
+}

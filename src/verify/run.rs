@@ -1,0 +1,350 @@
+//! Runs a suite: one run per pair of scene and integrator serves all its checks.
+
+use std::time::Instant;
+
+use nephroid_analytic::camera::Bounded;
+
+use super::effort::Effort;
+use super::expected::Truths;
+use super::replicates::{Canvas, FINAL, Seeds, Shape, run as run_replicates};
+use super::sizing::{self, Check, Demand, Size};
+use super::suite::{Coverage, LeftOut, Pair, Subject, select};
+use super::verdicts::{ALL_CLASSES, NotRun, Outcome, Verdict, WHOLE_IMAGE};
+use crate::error::Error;
+use crate::integrators::{Integrator, Kernel, Prepared, Technique, Treatment};
+use crate::judge::evidence::{Replicate, Sample};
+use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
+use crate::judge::verdict::{Finding, State, decide};
+
+/// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
+const MERGING_ITERATIONS: u32 = 16;
+/// Paths of an iteration that merges: the work grows with the square, the information does not.
+const MERGING_PATHS: u64 = 1 << 14;
+/// Paths of a replicate of any other method: clearing and summing the film costs a few percent of drawing them.
+const PATHS: u64 = 1 << 18;
+
+/// What to verify.
+pub struct Request {
+    /// The scenes.
+    pub scenes: Vec<Subject>,
+    /// The integrators.
+    pub integrators: Vec<Box<dyn Integrator>>,
+    /// Integrators that were not asked for by name and cannot take part.
+    pub left_out: Vec<LeftOut>,
+    /// How much to do.
+    pub effort: Effort,
+    /// Which pairs to run.
+    pub coverage: Coverage,
+    /// Equivalence margin relative to the truth.
+    pub margin: f64,
+    /// Probability of any false "different".
+    pub level: f64,
+    /// Share the error probabilities among at least this many checks.
+    pub checks: Option<u64>,
+    /// The seed.
+    pub seed: u64,
+    /// Angle α [rad] or radius r [m].
+    pub bandwidth: f64,
+    /// The mollifier; `None` for each method's default.
+    pub kernel: Option<Kernel>,
+}
+
+/// Runs the suite. `progress` hears of each pair before it starts: its position, their number, scene and integrator.
+///
+/// # Errors
+/// A kernel or a bandwidth that does not fit.
+pub fn run(
+    request: &Request,
+    progress: &dyn Fn(usize, usize, &str, &str),
+) -> Result<Outcome, Error> {
+    let started = Instant::now();
+    let (pairs, mut not_run) = select(&request.scenes, &request.integrators, request.coverage);
+    for subject in &request.scenes {
+        not_run.extend(request.left_out.iter().map(|l| NotRun {
+            scene: subject.entry.name.clone(),
+            integrator: l.integrator.clone(),
+            reason: l.reason.clone(),
+        }));
+    }
+    let planned: u64 = pairs.iter().map(Pair::checks).sum();
+    let checks = planned.max(request.checks.unwrap_or(0));
+    let levels = Levels::shared(request.level, EQUIVALENCE_LEVEL, checks);
+    let mut truths = Truths::default();
+    let mut verdicts = Vec::new();
+    for (position, pair) in pairs.iter().enumerate() {
+        let scene = &request.scenes[pair.scene].entry.name;
+        let integrator = request.integrators[pair.integrator].name();
+        progress(position, pairs.len(), scene, integrator);
+        verdicts.extend(run_pair(request, pair, levels, checks, &mut truths)?);
+    }
+    Ok(Outcome {
+        verdicts,
+        not_run,
+        effort: request.effort,
+        level: request.level,
+        equivalence_level: EQUIVALENCE_LEVEL,
+        checks,
+        margin: request.margin,
+        bandwidth: request.bandwidth,
+        seed: request.seed,
+        seconds: started.elapsed().as_secs_f64(),
+    })
+}
+
+fn run_pair(
+    request: &Request,
+    pair: &Pair,
+    levels: Levels,
+    checks: u64,
+    truths: &mut Truths,
+) -> Result<Vec<Verdict>, Error> {
+    let started = Instant::now();
+    let subject = &request.scenes[pair.scene];
+    let integrator = request.integrators[pair.integrator].as_ref();
+    let entry = &subject.entry;
+    let shape = first_shape(integrator, pair, request.bandwidth);
+    let kernel = request.kernel.and_then(|k| k.to_string().parse().ok());
+    let expected = truths.of(pair.scene, entry, &pair.plan, kernel, &shape.bandwidths)?;
+    let canvas = Canvas {
+        width: entry.camera.width,
+        height: entry.camera.height,
+        classes: entry.kind.classes(),
+    };
+    let demand = Demand {
+        margin: request.margin,
+        levels,
+        most_paths: request.effort.most_paths(),
+    };
+    let seeds = Seeds::new(request.seed, &entry.name, integrator.name());
+    let evidence = gather(
+        || integrator.prepare(entry),
+        canvas,
+        shape,
+        seeds,
+        &expected,
+        demand,
+    );
+    let seconds = started.elapsed().as_secs_f64();
+    let command = command(request, &subject.argument, integrator.name(), checks);
+    let verdicts = judge(&evidence, &expected, demand)
+        .into_iter()
+        .map(|judged| {
+            let treatment = judged.class.map(|c| pair.plan[c].treatment);
+            let regularized = match treatment {
+                Some(t) => is_regularized(t),
+                None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
+            };
+            let class = judged.class.map(|c| pair.plan[c].class.to_string());
+            let per_replicate = evidence.size.shape.paths();
+            Verdict {
+                scene: entry.name.clone(),
+                integrator: integrator.name().to_owned(),
+                class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
+                region: WHOLE_IMAGE.to_owned(),
+                paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
+                finding: judged.finding,
+                truth: judged.truth,
+                mean: judged.mean,
+                margin: request.margin,
+                levels,
+                bandwidth: regularized.then_some(request.bandwidth),
+                replicates: evidence.replicates.len() as u32,
+                paths: evidence.replicates.len() as u64 * per_replicate,
+                seed: request.seed,
+                seconds,
+                command: command.clone(),
+            }
+        });
+    Ok(verdicts.collect())
+}
+
+fn is_regularized(treatment: Treatment) -> bool {
+    matches!(treatment, Treatment::Regularized(_))
+}
+
+/// The replicates that pilots start with.
+fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64) -> Shape {
+    let schedule = integrator.schedule(bandwidth);
+    let merges = |t: Treatment| t == Treatment::Regularized(Technique::Merge);
+    if pair.plan.iter().any(|c| merges(c.treatment)) {
+        Shape {
+            bandwidths: (0..MERGING_ITERATIONS)
+                .map(|i| schedule.bandwidth(i))
+                .collect(),
+            paths_per_iteration: MERGING_PATHS,
+        }
+    } else {
+        Shape {
+            bandwidths: vec![schedule.bandwidth(0)],
+            paths_per_iteration: PATHS,
+        }
+    }
+}
+
+/// The replicates of a final test.
+pub struct Evidence {
+    /// The replicates; none if nothing is claimed.
+    pub replicates: Vec<Replicate>,
+    /// What was planned.
+    pub size: Size,
+}
+
+/// Plans and runs the final test of one integrator on one scene. `expected` is the mean of each class, `None` for what is not
+/// sampled.
+pub fn gather(
+    prepare: impl FnOnce() -> Box<dyn Prepared>,
+    canvas: Canvas,
+    shape: Shape,
+    seeds: Seeds,
+    expected: &[Option<Bounded>],
+    demand: Demand,
+) -> Evidence {
+    let checks: Vec<Check> = regions(expected)
+        .into_iter()
+        .map(|(_, check)| check)
+        .collect();
+    if checks.is_empty() {
+        return Evidence {
+            replicates: Vec::new(),
+            size: Size {
+                shape,
+                replicates: 0,
+            },
+        };
+    }
+    let prepared = prepare();
+    let prepared = prepared.as_ref();
+    let size = sizing::plan(prepared, canvas, shape, seeds, &checks, demand);
+    let replicates = run_replicates(prepared, canvas, &size.shape, seeds, FINAL, size.replicates);
+    Evidence { replicates, size }
+}
+
+/// What is checked: each claimed class, and their sum (class `None`) if there are several.
+fn regions(expected: &[Option<Bounded>]) -> Vec<(Option<usize>, Check)> {
+    let claimed = || {
+        expected
+            .iter()
+            .enumerate()
+            .filter_map(|(i, e)| e.map(|e| (i, e)))
+    };
+    let mut regions: Vec<_> = claimed()
+        .map(|(i, truth)| {
+            let layers = vec![i];
+            (Some(i), Check { layers, truth })
+        })
+        .collect();
+    if regions.len() > 1 {
+        let truth = claimed().fold(Bounded::default(), |sum, (_, e)| Bounded {
+            value: sum.value + e.value,
+            error: sum.error + e.error,
+        });
+        let layers = claimed().map(|(i, _)| i).collect();
+        regions.push((None, Check { layers, truth }));
+    }
+    regions
+}
+
+/// A finding about one region.
+pub struct Judged {
+    /// Position of the class, `None` for the sum of those claimed.
+    pub class: Option<usize>,
+    /// What the mean should be.
+    pub truth: Option<Bounded>,
+    /// What it is.
+    pub mean: Option<f64>,
+    /// What follows.
+    pub finding: Finding,
+}
+
+/// Decides about every class in order, and then about their sum.
+pub fn judge(evidence: &Evidence, expected: &[Option<Bounded>], demand: Demand) -> Vec<Judged> {
+    let mut regions = regions(expected).into_iter().peekable();
+    let decided = |(class, check): (Option<usize>, Check)| {
+        let sample = Sample::of_layers(&evidence.replicates, &check.layers);
+        Judged {
+            class,
+            truth: Some(check.truth),
+            mean: Some(sample.mean),
+            finding: decide(&sample, check.truth, demand.margin, demand.levels),
+        }
+    };
+    let mut judged = Vec::new();
+    for position in 0..expected.len() {
+        match regions.next_if(|(class, _)| *class == Some(position)) {
+            Some(region) => judged.push(decided(region)),
+            None => judged.push(not_sampled(evidence, position)),
+        }
+    }
+    judged.extend(regions.map(decided));
+    judged
+}
+
+/// A class that is declared impossible must indeed stay empty.
+fn not_sampled(evidence: &Evidence, position: usize) -> Judged {
+    let sample = Sample::of_layers(&evidence.replicates, &[position]);
+    let finding = if sample.contributions > 0 {
+        Finding::bare(
+            State::Different,
+            format!(
+                "declared impossible, yet it has {} contributions",
+                sample.contributions
+            ),
+        )
+    } else {
+        Finding::bare(
+            State::NotSampled,
+            "the method cannot build paths of this class",
+        )
+    };
+    Judged {
+        class: Some(position),
+        truth: None,
+        mean: None,
+        finding,
+    }
+}
+
+/// The command that gives the same verdicts on one pair: what the suite had as defaults is written out.
+fn command(request: &Request, scene: &str, integrator: &str, checks: u64) -> String {
+    let mut text = format!(
+        "nephroid verify --scene {} --integrator {integrator} --seed {} --effort {}",
+        quoted(scene),
+        request.seed,
+        request.effort
+    );
+    let mut add = |option: &str, value: String, default: String| {
+        if value != default {
+            text.push_str(&format!(" {option} {value}"));
+        }
+    };
+    add(
+        "--margin",
+        request.margin.to_string(),
+        request.effort.margin().to_string(),
+    );
+    add(
+        "--level",
+        request.level.to_string(),
+        crate::judge::hypotheses::LEVEL.to_string(),
+    );
+    add(
+        "--bandwidth",
+        request.bandwidth.to_string(),
+        super::effort::BANDWIDTH.to_string(),
+    );
+    if let Some(kernel) = request.kernel {
+        text.push_str(&format!(" --kernel {kernel}"));
+    }
+    text.push_str(&format!(" --checks {checks}"));
+    text
+}
+
+/// An argument as a POSIX shell reads it back.
+fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./".contains(c);
+    if argument.chars().all(plain) {
+        argument.to_owned()
+    } else {
+        format!("'{}'", argument.replace('\'', "'\\''"))
+    }
+}

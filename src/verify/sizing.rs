@@ -1,0 +1,113 @@
+//! How many paths a fixed-sample test needs: found by pilots, whose replicates are thrown away so that the final test
+//! stays a test with a sample size that does not depend on its data.
+
+use nephroid_analytic::camera::Bounded;
+
+use super::replicates::{Canvas, Seeds, Shape, run};
+use crate::integrators::Prepared;
+use crate::judge::evidence::{FEWEST_CONTRIBUTIONS, FEWEST_REPLICATES, Replicate, Sample};
+use crate::judge::hypotheses::Levels;
+use crate::judge::power::replicates_needed;
+
+/// Replicates of a pilot: a variance to about 20 %.
+const PILOT_REPLICATES: u32 = 48;
+/// The pilot's variance is multiplied by this before it is used: it may have been lucky.
+const VARIANCE_ALLOWANCE: f64 = 1.3;
+/// A replicate is made large enough for this many contributions, so that none falls below [`FEWEST_CONTRIBUTIONS`].
+const CONTRIBUTIONS_WANTED: u64 = 2 * FEWEST_CONTRIBUTIONS;
+/// Paths after which a class that is claimed and has not been seen is given up as missing: at least this many are
+/// drawn in the final test before it says so.
+pub const PATHS_BEFORE_MISSING: u64 = 20_000_000;
+/// The most replicates, so that what is kept of them stays small.
+const MOST_REPLICATES: u64 = 1 << 20;
+
+/// One check: a sum of layers against a truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// Positions of the film's layers.
+    pub layers: Vec<usize>,
+    /// What their sum should be [W m⁻² sr⁻¹].
+    pub truth: Bounded,
+}
+
+/// What the checks of one run share.
+#[derive(Clone, Copy, Debug)]
+pub struct Demand {
+    /// Equivalence margin relative to the truth.
+    pub margin: f64,
+    /// Error probabilities of one check.
+    pub levels: Levels,
+    /// The most paths in the final test.
+    pub most_paths: u64,
+}
+
+/// Sample size of a final test.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Size {
+    /// What a replicate consists of.
+    pub shape: Shape,
+    /// How many there are.
+    pub replicates: u32,
+}
+
+/// Runs pilots until replicates are large enough for normal means, then plans for the hardest check.
+pub fn plan(
+    prepared: &dyn Prepared,
+    canvas: Canvas,
+    first: Shape,
+    seeds: Seeds,
+    checks: &[Check],
+    demand: Demand,
+) -> Size {
+    let mut shape = first;
+    let mut pilot = Vec::new();
+    for phase in 1..=8 {
+        pilot = run(prepared, canvas, &shape, seeds, phase, PILOT_REPLICATES);
+        let factor = growth(&pilot, checks, &shape, demand);
+        if factor <= 1 {
+            break;
+        }
+        shape.paths_per_iteration *= factor;
+    }
+    let most = (demand.most_paths / shape.paths()).clamp(FEWEST_REPLICATES as u64, MOST_REPLICATES);
+    let samples = checks
+        .iter()
+        .map(|c| (Sample::of_layers(&pilot, &c.layers), c.truth));
+    let needed = samples.map(|(sample, truth)| {
+        if sample.contributions == 0 {
+            return PATHS_BEFORE_MISSING.div_ceil(shape.paths());
+        }
+        let variance = VARIANCE_ALLOWANCE * sample.variance;
+        replicates_needed(variance, truth, demand.margin, demand.levels).unwrap_or(0)
+    });
+    let replicates = needed.max().unwrap_or(0);
+    Size {
+        replicates: replicates.max(FEWEST_REPLICATES as u64).min(most) as u32,
+        shape,
+    }
+}
+
+/// By how much replicates must grow.
+fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) -> u64 {
+    let samples = || checks.iter().map(|c| Sample::of_layers(pilot, &c.layers));
+    // What is not a number stays so with more paths.
+    let seen = samples().filter(|s| s.contributions > 0 && s.invalid.pixels() == 0);
+    let replicates = u64::from(PILOT_REPLICATES);
+    let wanted = |s: Sample| {
+        let mean = s.contributions / replicates;
+        if s.fewest_contributions >= CONTRIBUTIONS_WANTED {
+            1
+        } else {
+            (2 * CONTRIBUTIONS_WANTED)
+                .div_ceil(mean.max(1))
+                .next_power_of_two()
+        }
+    };
+    let for_seen = seen.map(wanted).max().unwrap_or(1);
+    let most_for_seen =
+        (demand.most_paths / (FEWEST_REPLICATES as u64 * shape.paths())).next_power_of_two();
+    let unseen = samples().any(|s| s.contributions == 0);
+    let enough = shape.paths() * replicates >= PATHS_BEFORE_MISSING;
+    let for_unseen = if unseen && !enough { 8 } else { 1 };
+    for_seen.min(most_for_seen).min(1024).max(for_unseen)
+}

@@ -1,0 +1,145 @@
+//! Which pairs of scene and integrator a suite runs.
+
+use nephroid_analytic::scene::{Entry, Kind};
+
+use super::expected::mollified;
+use super::verdicts::NotRun;
+use crate::integrators::{ClassPlan, Integrator, Plan, Treatment};
+
+/// A scene as the user named it.
+pub struct Subject {
+    /// A name in the catalogue or a file.
+    pub argument: String,
+    /// What it stands for.
+    pub entry: Entry,
+}
+
+/// An integrator that takes part in no pair.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Its name.
+    pub integrator: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// How many of the pairs are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coverage {
+    /// Each integrator on two entries or more, each entry by two integrators or more, where there are as many.
+    Covering,
+    /// All of them.
+    Everything,
+}
+
+/// A pair of scene and integrator, by their positions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// Position of the scene.
+    pub scene: usize,
+    /// Position of the integrator.
+    pub integrator: usize,
+    /// What the integrator does about the scene's classes.
+    pub plan: Plan,
+}
+
+impl Pair {
+    /// Positions of the classes that the integrator claims.
+    pub fn claimed(&self) -> Vec<usize> {
+        let sampled =
+            |(i, c): (usize, &ClassPlan)| (c.treatment != Treatment::NotSampled).then_some(i);
+        self.plan.iter().enumerate().filter_map(sampled).collect()
+    }
+
+    /// Number of checks: one for each claimed class, and one for their sum if there are several.
+    pub fn checks(&self) -> u64 {
+        match self.claimed().len() as u64 {
+            several @ 2.. => several + 1,
+            one_or_none => one_or_none,
+        }
+    }
+}
+
+/// Entries and integrators that a covering subset gives each integrator and each entry, where there are as many.
+const COVER: usize = 2;
+
+/// Chooses what to run, in the order of scenes and then integrators, and says why the rest is left out.
+pub fn select(
+    scenes: &[Subject],
+    integrators: &[Box<dyn Integrator>],
+    coverage: Coverage,
+) -> (Vec<Pair>, Vec<NotRun>) {
+    let mut pairs = Vec::new();
+    let mut not_run = Vec::new();
+    for (s, subject) in scenes.iter().enumerate() {
+        for (i, integrator) in integrators.iter().enumerate() {
+            let plan = integrator.plan(&subject.entry);
+            match without_truth(&subject.entry, &plan) {
+                Some(reason) => not_run.push((s, i, reason)),
+                None => pairs.push(Pair {
+                    scene: s,
+                    integrator: i,
+                    plan,
+                }),
+            }
+        }
+    }
+    if coverage == Coverage::Covering {
+        let keep = covering(&pairs, scenes.len(), integrators.len());
+        let mut kept = keep.iter();
+        pairs.retain(|p| {
+            let keep = *kept.next().unwrap_or(&true);
+            if !keep {
+                not_run.push((p.scene, p.integrator, "not in the quick subset".to_owned()));
+            }
+            keep
+        });
+        not_run.sort();
+    }
+    let name = |(s, i, reason): (usize, usize, String)| NotRun {
+        scene: scenes[s].entry.name.clone(),
+        integrator: integrators[i].name().to_owned(),
+        reason,
+    };
+    (pairs, not_run.into_iter().map(name).collect())
+}
+
+/// Why a plan cannot be judged on an entry.
+fn without_truth(entry: &Entry, plan: &Plan) -> Option<String> {
+    let unknown = |t: Treatment| match t {
+        Treatment::Regularized(technique) => {
+            mollified(technique).is_none() || !matches!(entry.kind, Kind::PlanarMirror { .. })
+        }
+        _ => false,
+    };
+    plan.iter().any(|c| unknown(c.treatment)).then(|| {
+        format!(
+            "no exact expectation at finite bandwidth for the kind {}",
+            entry.kind.name()
+        )
+    })
+}
+
+/// Marks a covering subset. Each integrator takes the entries on which it claims the most classes; then entries that
+/// still lack integrators take those that claim the most. Ties go to the first. Pairs that claim nothing cost nothing
+/// and stay.
+fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
+    let classes: Vec<usize> = pairs.iter().map(|p| p.claimed().len()).collect();
+    let mut keep: Vec<bool> = classes.iter().map(|&c| c == 0).collect();
+    let cover = |belongs: &dyn Fn(&Pair) -> bool, keep: &mut Vec<bool>| {
+        let mut candidates: Vec<usize> = (0..pairs.len())
+            .filter(|&k| classes[k] > 0 && belongs(&pairs[k]))
+            .collect();
+        candidates.sort_by_key(|&k| (!keep[k], core::cmp::Reverse(classes[k])));
+        for k in candidates.into_iter().take(COVER) {
+            keep[k] = true;
+        }
+    };
+    for i in 0..integrators {
+        cover(&|p| p.integrator == i, &mut keep);
+    }
+    for s in 0..scenes {
+        cover(&|p| p.scene == s, &mut keep);
+    }
+    keep
+}

@@ -1,0 +1,92 @@
+//! What a suite answers: verdicts with everything that is needed to judge and to reproduce them.
+
+use nephroid_analytic::camera::Bounded;
+
+use super::effort::Effort;
+use crate::judge::hypotheses::Levels;
+use crate::judge::verdict::{Finding, exit_code};
+
+/// The word for the sum of all classes that an integrator claims.
+pub const ALL_CLASSES: &str = "all";
+/// The word for the region that is the whole image.
+pub const WHOLE_IMAGE: &str = "image";
+
+/// One check and what came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The scene's name.
+    pub scene: String,
+    /// The integrator's name.
+    pub integrator: String,
+    /// The path class, or `all` for the sum of those claimed.
+    pub class: String,
+    /// The part of the image.
+    pub region: String,
+    /// State, effect, interval, p-values, power.
+    pub finding: Finding,
+    /// What the mean should be [W m⁻² sr⁻¹].
+    pub truth: Option<Bounded>,
+    /// What it is.
+    pub mean: Option<f64>,
+    /// Equivalence margin relative to the truth.
+    pub margin: f64,
+    /// Error probabilities of this check.
+    pub levels: Levels,
+    /// Angle [rad] or radius [m] of the mollifier (of the first iteration); `None` for what is not regularized.
+    pub bandwidth: Option<f64>,
+    /// Independent repetitions.
+    pub replicates: u32,
+    /// Paths in the final test.
+    pub paths: u64,
+    /// Paths that would decide, where these did not.
+    pub paths_needed: Option<u64>,
+    /// The user's seed.
+    pub seed: u64,
+    /// Wall-clock time of the run that served all checks of this scene and integrator, truth and pilots included.
+    pub seconds: f64,
+    /// The command that gives the same verdict again.
+    pub command: String,
+}
+
+/// A pair of scene and integrator that was left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotRun {
+    /// The scene's name.
+    pub scene: String,
+    /// The integrator's name.
+    pub integrator: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// The answer of a suite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The verdicts, in the order of scenes, integrators and classes.
+    pub verdicts: Vec<Verdict>,
+    /// What was left out.
+    pub not_run: Vec<NotRun>,
+    /// The effort asked for.
+    pub effort: Effort,
+    /// Probability of any false "different" in the suite.
+    pub level: f64,
+    /// Probability of any false "equivalent" in the suite.
+    pub equivalence_level: f64,
+    /// Checks among which these are shared.
+    pub checks: u64,
+    /// Equivalence margin relative to the truth.
+    pub margin: f64,
+    /// Angle [rad] or radius [m] of the mollifiers.
+    pub bandwidth: f64,
+    /// The user's seed.
+    pub seed: u64,
+    /// Wall-clock time.
+    pub seconds: f64,
+}
+
+impl Outcome {
+    /// See [`crate::exit`].
+    pub fn exit_code(&self) -> u8 {
+        exit_code(self.verdicts.iter().map(|v| v.finding.state))
+    }
+}
