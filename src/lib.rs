@@ -3,6 +3,7 @@
 pub mod cli;
 pub mod entry;
 pub mod error;
+pub mod evaluate;
 pub mod exit;
 pub mod expectation;
 pub mod exr_output;

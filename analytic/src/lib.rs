@@ -6,7 +6,12 @@
 pub mod bandwidth;
 pub mod camera;
 pub mod class;
+mod double_double;
+pub mod kinds;
+pub mod optics;
 pub mod pixel;
+pub mod quadrature;
+pub mod roots;
 pub mod scalar;
 pub mod scene;
 mod validate;

@@ -1,7 +1,9 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod evaluate;
 mod explain;
 mod list;
+mod probe;
 mod render;
 mod run;
 mod verify;
@@ -32,6 +34,8 @@ enum Command {
     Explain(explain::Args),
     Render(render::Args),
     Run(run::Args),
+    Evaluate(evaluate::Args),
+    Probe(probe::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -44,6 +48,8 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+        Command::Probe(args) => probe::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

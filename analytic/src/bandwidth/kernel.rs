@@ -111,7 +111,7 @@ struct Cell {
 }
 
 /// The kernel averaged over a list of bandwidths.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Profile {
     rules: Vec<Rule>,
     pieces: Vec<Piece>,
@@ -401,8 +401,8 @@ pub(super) fn gauss(
     let mut r = ([0.0; 2], [0.0; 2]);
     for (x, w) in rule.iter() {
         let v = f(a + length * x);
-        for k in 0..2 {
-            let c = length * w * v[k];
+        for (k, v) in v.into_iter().enumerate() {
+            let c = length * w * v;
             r.0[k] += c;
             r.1[k] += c.abs();
         }

@@ -278,21 +278,16 @@ impl<'a> Linked<'a> {
         let left = product(&r2, &product(&hn, &hn));
         let md = product(&missing, &d);
         let right = product(&md, &md);
-        const BINOMIAL: [[f64; 7]; 7] = [
-            [1., 0., 0., 0., 0., 0., 0.],
-            [1., 1., 0., 0., 0., 0., 0.],
-            [1., 2., 1., 0., 0., 0., 0.],
-            [1., 3., 3., 1., 0., 0., 0.],
-            [1., 4., 6., 4., 1., 0., 0.],
-            [1., 5., 10., 10., 5., 1., 0.],
-            [1., 6., 15., 20., 15., 6., 1.],
-        ];
-        let coefficient = |p: &[f64], i: usize| p.get(i).copied().unwrap_or(0.0);
+        // Coefficient i of t weighs C(j, i)/C(6, i) in Bernstein coefficient j.
         let mut bernstein = [0.0; 7];
-        for (j, b) in bernstein.iter_mut().enumerate() {
-            for i in 0..=j {
-                let c = coefficient(&left, i) - radius * radius * coefficient(&right, i);
-                *b += BINOMIAL[j][i] / BINOMIAL[6][i] * c;
+        for (i, l) in left.iter().enumerate() {
+            let c = l - radius * radius * right.get(i).copied().unwrap_or(0.0);
+            let mut ratio = 1.0;
+            for j in i..7 {
+                // C(j, i)/C(6, i), from its value 1 at j = 6 downwards.
+                let k = 6 + i - j;
+                bernstein[k] += ratio * c;
+                ratio *= (k - i) as f64 / k.max(1) as f64;
             }
         }
         isolate(&bernstein, 0.0, 1.0, 0, &mut |t0, t1| {

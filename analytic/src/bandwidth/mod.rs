@@ -15,6 +15,7 @@
 //! plane only at its end. The floor hides nothing either: y and s are above it.
 
 mod clip;
+mod cubature;
 pub mod film;
 mod kernel;
 mod linked;

@@ -46,10 +46,10 @@ pub(super) fn integrate<C: Chart>(
     if domain.is_beyond(reach) {
         return Pair::default();
     }
-    if domain.contains_disc(reach) {
-        if let Some(r) = trapezoid(chart, profile, tolerance, floor) {
-            return r;
-        }
+    if domain.contains_disc(reach)
+        && let Some(r) = trapezoid(chart, profile, tolerance, floor)
+    {
+        return r;
     }
     let inner = 0.1 * tolerance;
     let mut radial = |w: f64| {
@@ -68,6 +68,12 @@ pub(super) fn integrate<C: Chart>(
     };
     let pieces = broken_at_crossings(chart, profile, tolerance);
     adaptive(&smooth(&pieces), tolerance, floor, SPLITS, &mut radial)
+}
+
+/// Whether no border of the domain cuts the kernel's support.
+pub(super) fn is_plain<C: Chart>(chart: &C, end: f64) -> bool {
+    let reach = chart.farthest(end);
+    chart.domain().is_beyond(reach) || chart.domain().contains_disc(reach)
 }
 
 fn trapezoid<C: Chart>(

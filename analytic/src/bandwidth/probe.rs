@@ -22,6 +22,8 @@ pub struct Expectation {
     technique: Technique,
     kernel: Kernel,
     bandwidths: Vec<f64>,
+    largest: f64,
+    smallest: f64,
     profile: Profile,
     rules: Vec<Rule>,
 }
@@ -39,24 +41,16 @@ impl Expectation {
         bandwidths: &[f64],
     ) -> Result<Self, InvalidParameter> {
         check(technique, kernel, bandwidths)?;
-        let angular = technique != Technique::Merge;
-        // The linked kernel has a bandwidth per mirror point, so nothing can be averaged beforehand.
-        let profiled = match technique {
-            Technique::Linked => &bandwidths[..1],
-            _ => bandwidths,
+        let profile = match technique {
+            // The linked kernel has a bandwidth per mirror point: nothing can be averaged beforehand.
+            Technique::Linked => Profile::default(),
+            Technique::Merge => Profile::new(kernel, false, bandwidths),
+            _ => Profile::new(kernel, true, bandwidths),
         };
-        let profiled: Vec<f64> = profiled
-            .iter()
-            .map(|b| {
-                if technique == Technique::Linked {
-                    b.min(1.0)
-                } else {
-                    *b
-                }
-            })
-            .collect();
         Ok(Expectation {
-            profile: Profile::new(kernel, angular, &profiled),
+            profile,
+            largest: bandwidths.iter().copied().fold(0.0, f64::max),
+            smallest: bandwidths.iter().copied().fold(f64::INFINITY, f64::min),
             setting,
             technique,
             kernel,
@@ -83,55 +77,81 @@ impl Expectation {
     /// **Domain**: the receiver's plane is the one through `x`. **Accuracy**: as stated in the error bounds; on the
     /// reference tables 1e-12 (tested).
     pub fn at(&self, x: [f64; 3], tolerance: f64) -> Moments {
+        self.examine(x, tolerance).0
+    }
+
+    /// The moments, and whether the kernel's support is whole or misses the domain (roughly, for `Linked`): then a
+    /// neighbourhood of x holds no kink.
+    pub(super) fn examine(&self, x: [f64; 3], tolerance: f64) -> (Moments, bool) {
         let x = Vec3::from_f64(x);
         let tolerance = tolerance.clamp(2e-14, 0.1);
         let result = match self.technique {
             Technique::Merge => Landing::new(&self.setting, x).map(|landing| {
-                let strength = self.setting.strength;
-                let from = self.setting.image() - x;
-                let brightest = strength / from.length_squared();
-                let floor = FAINT * brightest;
-                let factor = 4.0 * core::f64::consts::PI * strength * self.profile.ratio();
-                polar::integrate(&landing, &self.profile, tolerance, [floor, floor * factor])
+                let floor = self.floor(x);
+                (
+                    polar::integrate(&landing, &self.profile, tolerance, floor),
+                    polar::is_plain(&landing, self.profile.end),
+                )
+            }),
+            Technique::Linked => Unfolded::new(&self.setting, x, self.technique).map(|unfolded| {
+                let reach = libm::atan2(self.largest, unfolded.a).min(1.0);
+                (
+                    self.linked(x, &unfolded, tolerance),
+                    polar::is_plain(&unfolded, reach),
+                )
             }),
             technique => Unfolded::new(&self.setting, x, technique).map(|unfolded| {
-                let distance = unfolded.a + unfolded.b;
-                let floor = FAINT * self.setting.strength / (distance * distance);
-                let sample = unfolded.sample_at_root();
-                if technique == Technique::Linked {
-                    self.linked(x, &unfolded, tolerance, floor, sample)
-                } else {
-                    let factor = sample * self.profile.ratio();
-                    polar::integrate(&unfolded, &self.profile, tolerance, [floor, floor * factor])
-                }
+                (
+                    polar::integrate(&unfolded, &self.profile, tolerance, self.floor(x)),
+                    polar::is_plain(&unfolded, self.profile.end),
+                )
             }),
         };
-        let r = result.unwrap_or_default();
+        let (r, plain) = result.unwrap_or((Pair::default(), true));
         let bounded = |k: usize| Bounded {
             value: r.value[k],
             error: r.error[k],
         };
-        Moments {
+        let moments = Moments {
             mean: bounded(0),
             second_moment: bounded(1),
-        }
+        };
+        (moments, plain)
     }
 
-    fn linked(
-        &self,
-        x: Vec3<f64>,
-        unfolded: &Unfolded,
-        tolerance: f64,
-        floor: f64,
-        sample: f64,
-    ) -> Pair {
+    fn floor(&self, x: Vec3<f64>) -> [f64; 2] {
+        self.unclipped(x).map(|v| FAINT * v)
+    }
+
+    /// Mean and second moment at small bandwidth if mirror and receiver were unbounded, to the leading order and without
+    /// the receiver's cosine: what faint values are measured by.
+    pub(super) fn unclipped(&self, x: Vec3<f64>) -> [f64; 2] {
+        let strength = self.setting.strength;
+        let from = self.setting.image() - x;
+        let mean = strength / from.length_squared();
+        let light = 4.0 * core::f64::consts::PI * strength;
+        let factor = match (
+            self.technique,
+            Unfolded::new(&self.setting, x, self.technique),
+        ) {
+            (Technique::Merge, _) => light * self.profile.ratio(),
+            (_, None) => 0.0,
+            (Technique::Linked, Some(u)) => {
+                let narrow = libm::atan2(self.smallest, u.a);
+                u.sample_at_root() / (core::f64::consts::PI * narrow * narrow)
+            }
+            (_, Some(u)) => u.sample_at_root() * self.profile.ratio(),
+        };
+        [mean, mean * factor]
+    }
+
+    fn linked(&self, x: Vec3<f64>, unfolded: &Unfolded, tolerance: f64) -> Pair {
         let mut sum = Pair::default();
         let share = 1.0 / self.bandwidths.len() as f64;
+        let floor = self.floor(x);
         for &r in &self.bandwidths {
-            let narrow = libm::atan2(r, unfolded.a);
-            let floors = [floor, floor * sample / (narrow * narrow)];
             let linked = Linked::new(&self.setting, x, unfolded, self.kernel, r, &self.rules);
-            sum.add(&linked.integrate(tolerance, floors).scaled(share));
+            sum.add(&linked.integrate(tolerance, floor).scaled(share));
         }
         sum
     }

@@ -1,0 +1,210 @@
+//! Root finding that loses no root: Newton's method inside a bracket, and isolation by proven monotone pieces.
+//!
+//! Neither depends on a starting guess. [`bracketed`] needs a sign change; [`for_each_root`] makes the sign changes
+//! itself: it splits the interval until a bound on the second derivative proves of each piece that the function has no
+//! zero there, or that it is monotone there and so has exactly one zero if its ends differ in sign.
+
+use crate::scalar::Scalar;
+
+/// The zero of `f` between `low` and `high`, where `f` changes sign; `f` returns the value and the derivative.
+///
+/// Newton's method, replaced by bisection whenever a step leaves the bracket or does not halve the last one: it converges
+/// for every continuous function. A zero at an end is found as well.
+///
+/// **Accuracy**: the step that would still be taken is below half a unit in the last place of the answer, or the value
+/// is below what rounding lets `f` resolve.
+#[inline]
+pub fn bracketed<S: Scalar>(f: impl Fn(S) -> (S, S), low: S, high: S) -> S {
+    let rising = f(low).0 <= S::ZERO;
+    bracketed_from(f, low, high, S::HALF * (low + high), rising)
+}
+
+/// As [`bracketed`], from a starting point inside the bracket and with the direction known: `rising` says that `f` is
+/// negative (or zero) at `low`.
+#[inline]
+pub fn bracketed_from<S: Scalar>(
+    f: impl Fn(S) -> (S, S),
+    low: S,
+    high: S,
+    start: S,
+    rising: bool,
+) -> S {
+    let (mut below, mut above) = (low, high);
+    let mut x = start;
+    let mut last = (high - low).abs();
+    // A zero at 0 has no relative accuracy to reach.
+    let floor = S::EPSILON.squared() * last;
+    for _ in 0..128 {
+        let (value, slope) = f(x);
+        if value == S::ZERO {
+            return x;
+        }
+        if (value < S::ZERO) == rising {
+            below = x;
+        } else {
+            above = x;
+        }
+        let newton = x - value / slope;
+        let inside = (newton - below) * (newton - above) < S::ZERO;
+        let step = (newton - x).abs();
+        let next = if inside && step <= S::HALF * last {
+            last = step;
+            newton
+        } else {
+            let middle = S::HALF * (below + above);
+            last = (middle - x).abs();
+            middle
+        };
+        if (next - x).abs() <= S::EPSILON * S::HALF * next.abs() + floor
+            || next == below
+            || next == above
+        {
+            return next;
+        }
+        x = next;
+    }
+    x
+}
+
+/// What [`for_each_root`] must know of a function on [centre - half, centre + half].
+#[derive(Clone, Copy, Debug)]
+pub struct Local<S> {
+    /// Value at the centre.
+    pub value: S,
+    /// First derivative at the centre.
+    pub slope: S,
+    /// An upper bound of the absolute second derivative on the whole interval.
+    pub curvature: S,
+    /// What rounding can add to the value.
+    pub noise: S,
+}
+
+/// A zero, or what cannot be told from one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Isolated<S> {
+    /// A simple zero.
+    Simple(S),
+    /// The function touches zero to within rounding: a double zero, two zeros or none.
+    Touching(S),
+}
+
+/// Deepest subdivision. Pieces are never narrower than √ε of the interval, so this is never reached.
+const DEPTH: usize = 64;
+
+/// Visits all zeros of a twice differentiable function on [low, high) in ascending order, without allocation.
+///
+/// On a piece of half width h about m with |f''| ≤ B: there is no zero if |f(m)| > |f'(m)| h + B h²/2, and f is monotone
+/// if |f'(m)| > B h. A piece of which neither holds is halved, down to √ε times the interval; what is still undecided
+/// there is a sign change (visited as simple) or touches zero to within rounding.
+pub fn for_each_root<S: Scalar>(
+    low: S,
+    high: S,
+    local: impl Fn(S, S) -> Local<S>,
+    mut visit: impl FnMut(Isolated<S>),
+) {
+    let narrowest = S::EPSILON.sqrt() * (high - low).abs();
+    let value = |x: S| local(x, S::ZERO).value;
+    let mut stack = [(low, high, S::ZERO, S::ZERO); DEPTH];
+    stack[0] = (low, high, value(low), value(high));
+    let mut size = 1;
+    while size > 0 {
+        size -= 1;
+        let (a, b, at_a, at_b) = stack[size];
+        let (middle, half) = (S::HALF * (a + b), S::HALF * (b - a));
+        let f = local(middle, half);
+        let changes = (at_a <= S::ZERO) != (at_b <= S::ZERO);
+        let reach = f.slope.abs() * half + S::HALF * f.curvature * half.squared();
+        if !changes && f.value.abs() > reach + f.noise {
+            continue;
+        }
+        let monotone = f.slope.abs() > f.curvature * half;
+        let exhausted = half <= narrowest || size + 2 > DEPTH;
+        if monotone || exhausted {
+            if changes {
+                let root = bracketed(
+                    |x| {
+                        let f = local(x, S::ZERO);
+                        (f.value, f.slope)
+                    },
+                    a,
+                    b,
+                );
+                visit(Isolated::Simple(root));
+            } else if !monotone && f.value.abs() <= reach + f.noise {
+                visit(Isolated::Touching(middle));
+            }
+            continue;
+        }
+        stack[size] = (middle, b, f.value, at_b);
+        stack[size + 1] = (a, middle, at_a, f.value);
+        size += 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn roots(low: f64, high: f64, local: impl Fn(f64, f64) -> Local<f64>) -> Vec<Isolated<f64>> {
+        let mut found = vec![];
+        for_each_root(low, high, local, |r| found.push(r));
+        found
+    }
+
+    fn sine(frequency: f64, offset: f64) -> impl Fn(f64, f64) -> Local<f64> {
+        move |x, _| Local {
+            value: libm::sin(frequency * x) - offset,
+            slope: frequency * libm::cos(frequency * x),
+            curvature: frequency * frequency,
+            noise: 4.0 * f64::EPSILON,
+        }
+    }
+
+    #[test]
+    fn every_root_of_a_fast_sine_is_found() {
+        let found = roots(0.1, 100.1, sine(7.0, 0.25));
+        let expected = (0..400)
+            .flat_map(|k| {
+                let turn = 2.0 * core::f64::consts::PI * f64::from(k);
+                let first = libm::asin(0.25);
+                [
+                    (turn + first) / 7.0,
+                    (turn + core::f64::consts::PI - first) / 7.0,
+                ]
+            })
+            .filter(|x| (0.1..100.1).contains(x))
+            .collect::<Vec<_>>();
+        assert_eq!(found.len(), expected.len());
+        for (f, e) in found.iter().zip(&expected) {
+            assert!(
+                matches!(f, Isolated::Simple(x) if (x - e).abs() <= 1e-12),
+                "{f:?} {e}"
+            );
+        }
+    }
+
+    #[test]
+    fn pairs_near_a_double_root_are_resolved() {
+        for gap in [1e-2, 1e-4, 1e-6, 1e-9] {
+            // sin x = cos(gap) has roots π/2 ± gap.
+            let found = roots(0.0, 3.0, sine(1.0, libm::cos(gap)));
+            let simple = found
+                .iter()
+                .filter(|r| matches!(r, Isolated::Simple(_)))
+                .count();
+            let touching = found.len() - simple;
+            let resolved = gap > 1e-8;
+            assert_eq!(simple, if resolved { 2 } else { 0 }, "{gap} {found:?}");
+            assert_eq!(touching == 0, resolved, "{gap} {found:?}");
+        }
+        assert!(roots(0.0, 3.0, sine(1.0, 1.0 + 1e-6)).is_empty());
+    }
+
+    #[test]
+    fn bracketed_survives_flat_and_steep_functions() {
+        let cube = bracketed(|x: f64| (x * x * x - 1e-30, 3.0 * x * x), -1.0, 1.0);
+        assert!((cube - 1e-10).abs() <= 1e-22, "{cube:e}");
+        let end = bracketed(|x: f64| (x, 1.0), 0.0, 1.0);
+        assert!(end.abs() <= 1e-31, "{end:e}");
+    }
+}

@@ -1,0 +1,166 @@
+//! The closed forms against the committed 30-digit tables, per class and per root, without the program's file reader.
+
+use nephroid_analytic::kinds::cylinder_cup::{
+    Beam, CylinderCup, Light, Root, Wall, point_light::Lamp,
+};
+use nephroid_analytic::kinds::flat_interface::FlatInterface;
+use nephroid_analytic::kinds::planar_mirror::PlanarMirror;
+use nephroid_analytic::vector::{Vec3, vec3};
+use serde_json::Value;
+
+fn number(value: &Value) -> f64 {
+    value
+        .as_str()
+        .expect("a decimal")
+        .parse()
+        .expect("a decimal")
+}
+
+fn vector(value: &Value) -> Vec3<f64> {
+    vec3(number(&value[0]), number(&value[1]), number(&value[2]))
+}
+
+fn configurations(text: &str) -> Vec<Value> {
+    let file: Value = serde_json::from_str(text).expect("JSON");
+    file["configurations"].as_array().expect("an array").clone()
+}
+
+fn check(id: &str, value: f64, error: f64, expected: f64) {
+    let difference = (value - expected).abs();
+    assert!(
+        difference <= error,
+        "{id}: {value:e} is {difference:e} off, bound {error:e}"
+    );
+    assert!(
+        difference <= 1e-12 * expected.abs() || error > 1e-12 * expected,
+        "{id}"
+    );
+}
+
+fn cup(p: &Value) -> CylinderCup<f64> {
+    let light = if p.get("light").is_some() {
+        let at = vector(&p["light"]);
+        Light::Point(Lamp {
+            x: at.x,
+            y: at.y,
+            height: at.z,
+            intensity: number(&p["I"]),
+        })
+    } else {
+        Light::Beam(Beam {
+            irradiance: number(&p["E0"]),
+            sin_elevation: number(&p["sin_elevation"]),
+            cos_elevation: number(&p["cos_elevation"]),
+        })
+    };
+    CylinderCup {
+        wall: Wall {
+            radius: number(&p["a"]),
+            height: (p["wall_height"] != "unbounded").then(|| number(&p["wall_height"])),
+            cos_half_arc: (p["wall"] == "half").then_some(0.0),
+        },
+        reflectance: number(&p["R"]),
+        light,
+    }
+}
+
+#[test]
+fn cup_tables() {
+    let mut roots_seen = 0;
+    for c in configurations(include_str!("../../golden/reference/cylinder-cup.json")) {
+        let p = &c["parameters"];
+        if p.get("x_line").is_some() {
+            continue;
+        }
+        let cup = cup(p);
+        for point in c["points"].as_array().expect("points") {
+            let id = point["id"].as_str().expect("id");
+            let x = vector(&point["x"]);
+            let direct = cup.direct(x.x, x.y);
+            check(id, direct.value, direct.error, number(&point["E_direct"]));
+            let (mut value, mut error) = (0.0, 0.0);
+            for k in 1..=p["max_bounces"].as_u64().expect("bounces") as u32 {
+                let sum = cup.caustic(x.x, x.y, k);
+                value += sum.value;
+                error += sum.error;
+                let mut found: Vec<Root<f64>> = vec![];
+                cup.for_each_lit_root(x.x, x.y, k, |r| found.push(r));
+                found.sort_by(|a, b| a.phi().total_cmp(&b.phi()));
+                let class = format!("L{}DE", "S".repeat(k as usize));
+                let empty = vec![];
+                let paths = point["paths"].as_array().expect("paths");
+                let listed = paths
+                    .iter()
+                    .find(|q| q["class"] == class.as_str())
+                    .map_or(&empty, |q| q["roots"].as_array().expect("roots"));
+                assert_eq!(found.len(), listed.len(), "{id} {class}");
+                for (f, l) in found.iter().zip(listed) {
+                    roots_seen += 1;
+                    let room = 1e-15 * (10.0 + cup.conditioning(x.x, x.y, k, f));
+                    assert!((f.phi() - number(&l["phi"])).abs() <= room, "{id} {f:?}");
+                    assert!(
+                        (f.wall_z - number(&l["wall_z"])).abs() <= room,
+                        "{id} {f:?}"
+                    );
+                    let e = number(&l["E"]);
+                    assert!((f.irradiance - e).abs() <= room * 16.0 * e, "{id} {f:?}");
+                }
+            }
+            check(id, value, error, number(&point["E_caustic"]));
+        }
+    }
+    assert_eq!(roots_seen, 116);
+}
+
+#[test]
+fn mirror_tables() {
+    for c in configurations(include_str!("../../golden/reference/planar-mirror.json")) {
+        let p = &c["parameters"];
+        let mirror = PlanarMirror::new(
+            vector(&p["light"]),
+            number(&p["I"]),
+            number(&p["R"]),
+            vector(&p["mirror_point"]),
+            vector(&p["mirror_normal"]).normalized(),
+            None,
+        );
+        for point in c["points"].as_array().expect("points") {
+            let id = point["id"].as_str().expect("id");
+            let x = vector(&point["x"]);
+            let (direct, caustic) = (mirror.direct(x), mirror.caustic(x));
+            check(id, direct.value, direct.error, number(&point["E_direct"]));
+            check(
+                id,
+                caustic.value,
+                caustic.error,
+                number(&point["E_caustic"]),
+            );
+        }
+    }
+}
+
+#[test]
+fn interface_tables() {
+    for c in configurations(include_str!("../../golden/reference/flat-interface.json")) {
+        let p = &c["parameters"];
+        let water = FlatInterface {
+            surface_z: number(&p["surface_z"]),
+            index: number(&p["n"]),
+            light: vector(&p["light"]),
+            intensity: number(&p["I"]),
+            receiver_z: p.get("Z").map_or(0.0, number),
+        };
+        for point in c["points"].as_array().expect("points") {
+            let id = point["id"].as_str().expect("id");
+            let x = vector(&point["x"]);
+            let (direct, caustic) = (water.direct(x.x, x.y), water.caustic(x.x, x.y));
+            check(id, direct.value, direct.error, number(&point["E_direct"]));
+            check(
+                id,
+                caustic.value,
+                caustic.error,
+                number(&point["E_caustic"]),
+            );
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Truth at the points of a reference file, compared with the file's expected values.
+//!
+//! A file of schema `nephroid-theory-reference/1` has a `scene` and `configurations`; each has an `id`, `parameters`,
+//! `points` and, for some, `views`. Only ids, parameters and points are needed: whatever expected value is there is
+//! compared, `null` counts as absent. Compared are the radiometric keys (`E*`, `L*`, `fluence*`, `specular_weight`, `T`);
+//! everything else is ignored.
+//!
+//! Each other schema is one more arm of [`evaluate`].
+
+mod cylinder_cup;
+mod diffuse;
+mod flat_interface;
+mod planar_mirror;
+pub mod reading;
+pub mod report;
+
+use nephroid_analytic::kinds::{Estimate, rounding_error};
+use serde_json::Value;
+
+use crate::error::Error;
+use crate::evaluate::reading::Object;
+pub use crate::evaluate::report::{Configuration, Item, Placed, Report, Row};
+
+/// The schema of tables of points.
+pub const REFERENCE: &str = "nephroid-theory-reference/1";
+
+/// Evaluates the text of a reference file; `file` is its name for messages.
+///
+/// # Errors
+/// [`Error::Content`] or [`Error::UnknownName`] for anything that is not such a file, with the place and what is allowed.
+pub fn evaluate(file: &str, text: &str) -> Result<Report, Error> {
+    let value: Value = serde_json::from_str(text).map_err(|e| Error::Content {
+        file: file.to_owned(),
+        message: format!("line {}, column {}: {e}", e.line(), e.column()),
+        help: "allowed: JSON with the keys schema, scene and configurations".into(),
+    })?;
+    let top = Object::top(file, &value)?;
+    match top.text("schema")? {
+        REFERENCE => evaluate_reference(&top),
+        other => Err(top.error("schema", &format!("`{other}`"), REFERENCE)),
+    }
+}
+
+/// Evaluates a file of schema [`REFERENCE`].
+fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
+    let scene = top.text("scene")?;
+    let evaluate: fn(&Object<'_>) -> Result<Vec<Item>, Error> = match scene {
+        "diffuse" => diffuse::configuration,
+        "planar-mirror" => planar_mirror::configuration,
+        "cylinder-cup" => cylinder_cup::configuration,
+        "flat-interface" => flat_interface::configuration,
+        other => {
+            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface";
+            return Err(top.error("scene", &format!("`{other}`"), allowed));
+        }
+    };
+    let configurations = top
+        .required_objects("configurations")?
+        .into_iter()
+        .map(|c| {
+            let c = c.as_configuration()?;
+            let mut items = evaluate(&c)?;
+            report::compare(&mut items);
+            let id = c.text("id")?.to_owned();
+            Ok(Configuration { id, items })
+        })
+        .collect::<Result<_, Error>>()?;
+    Ok(Report {
+        schema: REFERENCE.to_owned(),
+        scene: scene.to_owned(),
+        configurations,
+    })
+}
+
+/// Radiance ρE/π of a Lambertian receiver.
+fn radiance(albedo: f64, irradiance: Estimate<f64>) -> Estimate<f64> {
+    scaled(irradiance, albedo / core::f64::consts::PI, 1.0)
+}
+
+/// A value times a factor that has its own conditioning.
+fn scaled(estimate: Estimate<f64>, factor: f64, conditioning: f64) -> Estimate<f64> {
+    let value = estimate.value * factor;
+    Estimate {
+        value,
+        error: estimate.error * factor + rounding_error(value, conditioning),
+        roots: estimate.roots,
+    }
+}
+
+/// The sum of two estimates.
+fn sum(a: Estimate<f64>, b: Estimate<f64>) -> Estimate<f64> {
+    let value = a.value + b.value;
+    Estimate {
+        value,
+        error: a.error + b.error + rounding_error(value, 0.0),
+        roots: a.roots + b.roots,
+    }
+}
+
+/// One value with a conditioning.
+fn single(value: f64, conditioning: f64) -> Estimate<f64> {
+    Estimate {
+        value,
+        error: rounding_error(value, conditioning),
+        roots: 1,
+    }
+}
+
+/// What is seen of a receiver point by way of a specular surface: the rows that all views have.
+fn add_view(
+    rows: &mut report::Rows<'_>,
+    weight: Estimate<f64>,
+    albedo: f64,
+    direct: Estimate<f64>,
+    caustic: Estimate<f64>,
+) -> Result<(), Error> {
+    let seen = |e: Estimate<f64>| {
+        let l = radiance(albedo, e);
+        let relative = if weight.value > 0.0 {
+            weight.error / weight.value
+        } else {
+            0.0
+        };
+        Estimate {
+            value: l.value * weight.value,
+            error: l.error * weight.value + l.value * relative * weight.value,
+            roots: l.roots,
+        }
+    };
+    rows.add("specular_weight", weight)?;
+    rows.add("E_direct", direct)?;
+    rows.add("E_caustic", caustic)?;
+    rows.add("L_direct_seen", seen(direct))?;
+    rows.add("L_caustic_seen", seen(caustic))?;
+    rows.add("L", seen(sum(direct, caustic)))
+}
