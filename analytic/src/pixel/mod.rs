@@ -3,16 +3,25 @@
 //! A pixel's value is never a point sample. Planar scenes are clipped into smooth polygons ([`planar`]); scenes with
 //! curved film edges go by scan lines between exact events.
 
+mod cup;
+mod events;
+mod fan;
+mod floor_polygon;
+mod line;
 pub mod planar;
 mod planar_image;
 pub mod polygon;
+mod pool;
+mod quartic;
 pub mod rule;
 
 use crate::camera::Bounded;
 use crate::class::PathClass;
 use crate::scene::{Entry, InvalidParameter};
 
+use cup::CupImage;
 use planar_image::PlanarImage;
+use pool::PoolImage;
 
 /// The exact image of an entry, a row at a time.
 #[derive(Clone, Debug)]
@@ -25,6 +34,8 @@ pub struct PixelTruth {
 #[derive(Clone, Debug)]
 enum Image {
     Planar(PlanarImage),
+    Cup(CupImage),
+    Pool(PoolImage),
 }
 
 impl PixelTruth {
@@ -34,7 +45,10 @@ impl PixelTruth {
     /// The first parameter for which the closed form does not hold.
     pub fn new(entry: &Entry) -> Result<Self, InvalidParameter> {
         entry.validate()?;
-        let image = PlanarImage::new(entry).map(Image::Planar);
+        let image = PlanarImage::new(entry)
+            .map(Image::Planar)
+            .or_else(|| CupImage::new(entry).map(Image::Cup))
+            .or_else(|| PoolImage::new(entry).map(Image::Pool));
         let Some(image) = image else {
             return Err(InvalidParameter {
                 key: "kind".to_owned(),
@@ -61,6 +75,8 @@ impl PixelTruth {
         let mut row = vec![vec![Bounded::default(); self.width as usize]; self.classes.len()];
         match &self.image {
             Image::Planar(image) => image.row(j, tolerance, &mut row),
+            Image::Cup(image) => image.row(j, tolerance, &mut row),
+            Image::Pool(image) => image.row(j, tolerance, &mut row),
         }
         row
     }

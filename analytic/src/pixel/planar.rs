@@ -136,6 +136,16 @@ pub struct Rays {
 }
 
 impl Rays {
+    /// The camera's own rays, with heights counted from the plane at `z`: [`Rays::floor_point`] is on that plane.
+    pub(super) fn new(film: &Film, z: f64) -> Self {
+        Rays {
+            origin: film.position - vec3(0.0, 0.0, z),
+            corner: film.corner,
+            du: film.du,
+            dv: film.dv,
+        }
+    }
+
     /// The point where the ray through (u, v) meets the plane z = 0. Only meaningful inside the region of the same
     /// [`Eye`], where the ray goes down.
     #[inline(always)]
@@ -193,12 +203,7 @@ impl PlanarView {
         mirror: Option<&RectangleMirror>,
     ) -> Self {
         let light = Vec3::from_f64(light.position);
-        let direct = Rays {
-            origin: film.position,
-            corner: film.corner,
-            du: film.du,
-            dv: film.dv,
-        };
+        let direct = Rays::new(film, 0.0);
         let frame = mirror.map(Frame::new);
         let mirrored = frame.map(|m| Rays {
             origin: m.reflected_point(film.position),
@@ -308,7 +313,7 @@ impl PlanarView {
 const EDGE: f64 = 1e-12;
 
 /// Rays that go down and meet the floor's rectangle.
-fn floor_rectangle(rays: &Rays, floor: &Floor) -> ConvexSet {
+pub(super) fn floor_rectangle(rays: &Rays, floor: &Floor) -> ConvexSet {
     let mut half_planes = vec![rays.along(vec3(0.0, 0.0, -1.0))];
     let axes = [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)];
     for (k, axis) in axes.into_iter().enumerate() {
