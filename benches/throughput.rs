@@ -1,4 +1,5 @@
-//! Paths per CPU-second of every integrator on `mirror-wall`, one thread: `cargo bench --bench throughput`.
+//! Paths per CPU-second of every integrator on `mirror-wall` (or the scene in `BENCH_SCENE`), one thread:
+//! `cargo bench --bench throughput -- [INTEGRATOR]...`.
 //!
 //! One path of `ppm` is one photon and one camera path. Per integrator: a warm-up, then the median of seven runs, in
 //! seconds of CPU time of this thread where the system tells it, of wall time otherwise.
@@ -7,11 +8,11 @@ use std::time::Instant;
 
 use nephroid::entry;
 use nephroid::film::Film;
-use nephroid::integrators;
+use nephroid::integrators::{self, Treatment};
 
 /// Bandwidth: angle [rad] or radius [m].
 const BANDWIDTH: f64 = 0.2;
-const PATHS: u64 = 1 << 20;
+const PATHS: u64 = 1 << 21;
 const RUNS: u32 = 7;
 
 /// CPU time of this thread [s], on Linux.
@@ -39,6 +40,14 @@ fn main() {
         .collect();
     for integrator in integrators::all() {
         if !only.is_empty() && !only.iter().any(|name| name == integrator.name()) {
+            continue;
+        }
+        let plan = integrator.plan(&entry);
+        if plan.iter().all(|c| c.treatment == Treatment::NotSampled) {
+            println!(
+                "{:<8} samples no path class of this scene",
+                integrator.name()
+            );
             continue;
         }
         let prepared = integrator.prepare(&entry);

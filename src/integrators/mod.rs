@@ -9,7 +9,7 @@ mod camera_paths;
 pub mod kernel;
 mod lt;
 mod photon_grid;
-pub mod photon_mapping;
+mod photon_mapping;
 mod plan;
 mod pm;
 mod ppm;

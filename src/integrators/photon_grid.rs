@@ -27,6 +27,27 @@ impl Photons {
         self.flux.clear();
     }
 
+    /// Smallest and largest x, smallest and largest y; infinite, the wrong way round, without a photon.
+    fn bounds(&self) -> [f64; 4] {
+        let of = |v: &[f64]| {
+            let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+            v.iter().fold((low, high), |(low, high), &c| {
+                (
+                    if c < low { c } else { low },
+                    if c > high { c } else { high },
+                )
+            })
+        };
+        let ((x0, x1), (y0, y1)) = (of(&self.x), of(&self.y));
+        [x0, x1, y0, y1]
+    }
+
+    /// Area of the bounding box [m²].
+    pub(super) fn area(&self) -> f64 {
+        let [x0, x1, y0, y1] = self.bounds();
+        (x1 - x0) * (y1 - y0)
+    }
+
     #[inline(always)]
     pub(super) fn push(&mut self, x: f64, y: f64, flux: f64) {
         self.x.push(x);
@@ -52,16 +73,7 @@ impl PhotonGrid {
     /// Sorts photons for queries of this radius.
     pub(super) fn build(&mut self, photons: &Photons, radius: f64) {
         let n = photons.x.len();
-        let bounds = |v: &[f64]| {
-            v.iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &c| {
-                    (
-                        if c < low { c } else { low },
-                        if c > high { c } else { high },
-                    )
-                })
-        };
-        let ((x0, x1), (y0, y1)) = (bounds(&photons.x), bounds(&photons.y));
+        let [x0, x1, y0, y1] = photons.bounds();
         if n == 0 {
             (self.columns, self.rows) = (0, 0);
             return;

@@ -2,8 +2,9 @@
 //! their first diffuse vertex.
 //!
 //! Light that reaches the floor directly is sampled by next event estimation, never merged, so in a scene without a
-//! specular surface the radius changes no bit. An iteration of N paths is N photons and N camera paths, in maps of at
-//! most [`MAP`] photons each, so that memory and the cost of a path are constant. Photons are uniform over the sphere of
+//! specular surface the radius changes no bit. An iteration of N paths is N photons and N camera paths. It is cut into maps
+//! of so many photons each that a camera path meets about [`MET`] of them, so that memory and the cost of a path are
+//! constant; the expectation does not depend on the size of a map. Photons are uniform over the sphere of
 //! a point light (a cross-section of a directional beam that covers the mirror); one that lands in X adds
 //! Φ k(|X - x|)/N to the irradiance at x, in which the cosine is already.
 
@@ -25,8 +26,12 @@ use super::plan::{next_event_plan, plan_of};
 use super::settings::{Defect, Settings};
 use super::{ClassPlan, Plan, Prepared, Technique, Treatment};
 
-/// Photons in a map, at most.
-pub const MAP: u64 = 1 << 16;
+/// Photons that a camera path meets in the nine cells around its vertex, about.
+const MET: f64 = 128.0;
+/// Photons traced for a map, at least and at most: powers of two.
+const MAP: [u64; 2] = [1 << 12, 1 << 18];
+/// Photons traced to find out how dense they lie.
+const PILOT: u64 = 1 << 13;
 
 pub(super) fn kernel_of(settings: &Settings) -> Kernel {
     settings.kernel.unwrap_or(Kernel::Disc)
@@ -39,7 +44,8 @@ pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
             treatment: Treatment::Regularized(Technique::Merge),
             reason: format!(
                 "irregular: light and specular vertex are both singular; merged with photons that came through the \
-                 specular surface, {kernel} kernel on the distance on the floor"
+                 specular surface (uniform over the sphere of a point light, over the smallest beam that covers the \
+                 mirror of a directional one), {kernel} kernel on the distance on the floor"
             ),
         })
     })
@@ -61,12 +67,17 @@ fn prepared<L: Light, S: Specular>(
     defect: Defect,
 ) -> Box<dyn Prepared> {
     let emitter = scene.light.unaimed(&scene.surface.hull());
-    Box::new(PhotonMapping {
+    let mut mapping = PhotonMapping {
         scene,
         emitter,
         settings: *settings,
         defect,
-    })
+        density: 0.0,
+    };
+    if S::EXISTS {
+        mapping.density = mapping.pilot_density();
+    }
+    Box::new(mapping)
 }
 
 struct PhotonMapping<L: Light, S> {
@@ -74,6 +85,8 @@ struct PhotonMapping<L: Light, S> {
     emitter: L::Emitter,
     settings: Settings,
     defect: Defect,
+    /// Photons that reach the floor per photon traced and square metre of their bounding box, as a pilot found it.
+    density: f64,
 }
 
 /// Memory of an iteration.
@@ -86,29 +99,70 @@ struct Work {
     v: Lanes,
 }
 
-impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
-    fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
-        film.paths += paths;
-        let stream = Stream::new(seed, iteration);
-        let kernel = RadiusKernel::new(kernel_of(&self.settings), bandwidth, self.settings.fault);
-        let mut work = Work {
+impl Work {
+    fn new() -> Self {
+        Work {
             photons: Photons::default(),
             grid: PhotonGrid::default(),
             paths: CameraPaths::new(),
             value: zeros(),
             u: zeros(),
             v: zeros(),
-        };
-        for start in (0..paths).step_by(MAP as usize) {
-            let end = paths.min(start + MAP);
-            let blocks = || {
-                (start..end)
-                    .step_by(BLOCK)
-                    .map(move |first| (first, (end - first).min(BLOCK as u64) as usize))
-            };
+        }
+    }
+}
+
+/// First path and number of paths of each block.
+fn blocks(start: u64, end: u64) -> impl Iterator<Item = (u64, usize)> {
+    (start..end)
+        .step_by(BLOCK)
+        .map(move |first| (first, (end - first).min(BLOCK as u64) as usize))
+}
+
+impl<L: Light, S: Specular> PhotonMapping<L, S> {
+    /// Traces photons of a fixed stream, so that the size of a map depends on the scene and the radius alone, not on the
+    /// photons that it will hold (which would bias it).
+    fn pilot_density(&self) -> f64 {
+        let stream = Stream::new(u64::MAX, u32::MAX);
+        let mut work = Work::new();
+        for (first, live) in blocks(0, PILOT) {
+            emit(
+                &self.scene,
+                &self.emitter,
+                &self.defect,
+                &stream,
+                first,
+                live,
+                &mut work,
+            );
+        }
+        work.photons.x.len() as f64 / (PILOT as f64 * work.photons.area())
+    }
+
+    fn map_size(&self, radius: f64) -> u64 {
+        let met = self.density * 9.0 * radius * radius;
+        let [least, most] = MAP;
+        let mut size = least;
+        // No photon at all gives NaN, and the smallest map.
+        while size < most && (2 * size) as f64 * met <= MET {
+            size *= 2;
+        }
+        size
+    }
+}
+
+impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
+    fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
+        film.paths += paths;
+        let stream = Stream::new(seed, iteration);
+        let kernel = RadiusKernel::new(kernel_of(&self.settings), bandwidth, self.settings.fault);
+        let mut work = Work::new();
+        let size = self.map_size(kernel.radius);
+        for start in (0..paths).step_by(size as usize) {
+            let end = paths.min(start + size);
             if S::EXISTS {
                 work.photons.clear();
-                for (first, live) in blocks() {
+                for (first, live) in blocks(start, end) {
                     emit(
                         &self.scene,
                         &self.emitter,
@@ -122,7 +176,7 @@ impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
                 work.grid.build(&work.photons, kernel.radius);
             }
             let norm = kernel.norm * self.emitter.flux() / (end - start) as f64;
-            for (first, live) in blocks() {
+            for (first, live) in blocks(start, end) {
                 trace(
                     &self.scene,
                     &self.defect,

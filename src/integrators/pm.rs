@@ -1,4 +1,4 @@
-//! `pm`: photon mapping at a fixed radius. See [`super::photon_mapping`] for an iteration.
+//! `pm`: photon mapping at a fixed radius. See `photon_mapping.rs` for an iteration.
 
 use nephroid_analytic::scene::Entry;
 

@@ -1,5 +1,5 @@
 //! `ppm`: progressive photon mapping, probabilistic [Knaus & Zwicker 2011]: independent iterations of photon mapping
-//! whose radius shrinks by r²ᵢ₊₁ = r²ᵢ (i + a)/(i + 1), a = 2/3. See [`super::photon_mapping`] for an iteration, which
+//! whose radius shrinks by r²ᵢ₊₁ = r²ᵢ (i + a)/(i + 1), a = 2/3. See `photon_mapping.rs` for an iteration, which
 //! is given its radius; the sequence is in [`Integrator::schedule`].
 
 use nephroid_analytic::scene::Entry;

@@ -28,9 +28,9 @@ pub enum Fault {
     KernelNormalizedByPiAlphaSquared,
     /// The bandwidth in place of its square in the kernel's normalisation.
     RadiusForRadiusSquared,
-    /// Intensity (or irradiance) 1 in place of the light's own.
+    /// Intensity (or irradiance of a directional light) 1 in place of the light's own.
     IntensityForgotten,
-    /// Reflectance 1 in place of the mirror's own.
+    /// Reflectance 1 in place of the mirror's own. Changes nothing where there is no mirror.
     ReflectanceForgotten,
     /// The paths of one class are lost.
     ClassDropped(PathClass),

@@ -1,0 +1,153 @@
+//! Films bit by bit: the same on any number of threads, in any build, and at any bandwidth where nothing is regularized.
+
+use nephroid::entry;
+use nephroid::film::Film;
+use nephroid::integrators::accumulate::accumulate;
+use nephroid::integrators::{Integrator, Kernel, Settings, all, by_name};
+use nephroid_analytic::scene::Entry;
+
+const SCENES: [&str; 4] = ["floor", "mirror-wall", "cup", "pool"];
+
+fn load(scene: &str, width: u32, height: u32) -> Entry {
+    let mut entry = entry::load(scene).unwrap();
+    (entry.camera.width, entry.camera.height) = (width, height);
+    entry
+}
+
+fn empty(entry: &Entry) -> Film {
+    Film::new(
+        entry.camera.width,
+        entry.camera.height,
+        entry.kind.classes(),
+    )
+}
+
+fn one_iteration(integrator: &dyn Integrator, entry: &Entry, paths: u64, bandwidth: f64) -> Film {
+    let mut film = empty(entry);
+    integrator
+        .prepare(entry)
+        .iterate(7, 3, paths, bandwidth, &mut film);
+    film
+}
+
+/// FNV-1a over the bits of everything in a film.
+fn fingerprint(film: &Film) -> u64 {
+    let values = film.layers.iter().flatten().map(|v| v.to_bits());
+    let counts = film.nonzero.iter().copied().chain([film.paths]);
+    values
+        .chain(counts)
+        .flat_map(u64::to_le_bytes)
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        })
+}
+
+/// The same bits as in `golden/films.txt`, which was written by a release build and holds for an unoptimised one: the
+/// same test passes with `--release` and with `CARGO_PROFILE_TEST_OPT_LEVEL=0`.
+#[test]
+fn films_have_the_golden_bits() {
+    let mut lines = String::new();
+    for scene in SCENES {
+        let entry = load(scene, 31, 23);
+        for integrator in all() {
+            for kernel in [None, Some(Kernel::Epanechnikov)] {
+                let settings = Settings {
+                    kernel,
+                    fault: None,
+                };
+                let integrator = by_name(integrator.name(), &settings).unwrap();
+                let film = one_iteration(integrator.as_ref(), &entry, 20_000, 0.2);
+                let kernel = kernel.map_or("default".to_owned(), |k| k.to_string());
+                let name = integrator.name();
+                lines += &format!("{scene} {name} {kernel} {:016x}\n", fingerprint(&film));
+            }
+        }
+    }
+    let golden = include_str!("../golden/films.txt");
+    assert!(lines == golden, "the films now have these bits:\n{lines}");
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let entry = load("mirror-wall", 40, 30);
+    for name in ["pt-reg", "lt", "ppm"] {
+        let integrator = by_name(name, &Settings::default()).unwrap();
+        let prepared = integrator.prepare(&entry);
+        let schedule = integrator.schedule(0.2);
+        let film_with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            let mut film = empty(&entry);
+            // 12 iterations, the last one shorter.
+            pool.install(|| {
+                accumulate(
+                    prepared.as_ref(),
+                    &schedule,
+                    11,
+                    115_000,
+                    10_000,
+                    &mut film,
+                    |_| {},
+                );
+            });
+            film
+        };
+        let one = film_with(1);
+        assert_eq!(one.paths, 115_000);
+        for threads in [2, 7] {
+            assert!(one == film_with(threads), "{name}, {threads} threads");
+        }
+        // The same by hand: iterations in order, each at its bandwidth.
+        let mut sum = empty(&entry);
+        for iteration in 0..12 {
+            let mut film = empty(&entry);
+            let paths = if iteration < 11 { 10_000 } else { 5_000 };
+            prepared.iterate(
+                11,
+                iteration,
+                paths,
+                schedule.bandwidth(iteration),
+                &mut film,
+            );
+            sum.add(&film);
+        }
+        assert!(one == sum, "{name}");
+    }
+}
+
+#[test]
+fn seeds_and_iterations_are_different_streams() {
+    let entry = load("floor", 8, 8);
+    let prepared = by_name("pt", &Settings::default()).unwrap().prepare(&entry);
+    let film = |seed, iteration| {
+        let mut film = empty(&entry);
+        prepared.iterate(seed, iteration, 1000, 0.0, &mut film);
+        film
+    };
+    let first = film(1, 0);
+    assert!(first == film(1, 0));
+    for other in [film(2, 0), film(1, 1), film(1 + (1 << 32), 0)] {
+        assert!(first.layers != other.layers);
+    }
+}
+
+#[test]
+fn without_a_specular_surface_no_bandwidth_changes_a_bit() {
+    let entry = load("floor", 64, 48);
+    let reference = one_iteration(
+        by_name("pt", &Settings::default()).unwrap().as_ref(),
+        &entry,
+        50_000,
+        0.0,
+    );
+    assert!(reference.nonzero[0] > 10_000);
+    for name in ["pt-reg", "pm", "ppm"] {
+        let integrator = by_name(name, &Settings::default()).unwrap();
+        for bandwidth in [1e-6, 0.01, 0.2, 3.0] {
+            let film = one_iteration(integrator.as_ref(), &entry, 50_000, bandwidth);
+            assert!(film == reference, "{name} at {bandwidth}");
+        }
+    }
+}
