@@ -264,7 +264,7 @@ fn faults_do_what_they_say() {
             },
         )
         .unwrap();
-        one_iteration(integrator.as_ref(), &entry, 200_000, bandwidth).class_means()
+        one_iteration(integrator.as_ref(), &entry, 50_000, bandwidth).class_means()
     };
     let classes = entry.kind.classes();
     for name in NAMES {
