@@ -8,13 +8,13 @@ use crate::error::Error;
 use crate::evaluate::{self, Placed, Report, Row};
 use crate::exit;
 
-/// Evaluate the closed forms at the points of a reference file, and compare with its expected values.
+/// Evaluate closed forms, or exact expectations at finite bandwidth, at the points of a reference file, and compare.
 ///
 /// Prints every value with its error bound, the expected value's relative difference and, near a singularity, the
 /// difference that the conditioning allows; the worst difference last. Expected values are optional, one by one.
 #[derive(clap::Args)]
 pub struct Args {
-    /// File of schema nephroid-theory-reference/1.
+    /// File of schema nephroid-theory-reference/1 or nephroid-theory-bandwidth/1.
     #[arg(value_name = "FILE.json")]
     file: PathBuf,
     /// Exit with 1 if any relative difference is larger than this or, near a singularity, than its conditioning allows.

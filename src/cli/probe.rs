@@ -2,7 +2,11 @@
 
 use std::path::PathBuf;
 
+use nephroid_analytic::bandwidth::{
+    self, Expectation, Kernel, PlanarSetting, Technique, UnknownName,
+};
 use nephroid_analytic::kinds::entry::FloorTruth;
+use nephroid_analytic::scene::{InvalidParameter, Kind};
 use serde_json::{Value, json};
 
 use crate::error::Error;
@@ -13,6 +17,9 @@ use crate::{entry, exit};
 /// The CSV file has the header x,y,z and one point per line, in metres; the points must lie on the scene's floor, z = 0.
 /// Answers per point and class: irradiance E, radiance L = albedo E/pi, the error bound of E, the number of specular
 /// roots, and the distance to the nearest caustic fold where the scene has one. Points are numbered from 1.
+///
+/// With --technique and --bandwidth the caustic class is answered as a regularized estimator of that bandwidth converges
+/// to, together with the second moment of one of its samples, in irradiance.
 #[derive(clap::Args)]
 pub struct Args {
     /// Catalogue name or TOML file.
@@ -20,6 +27,16 @@ pub struct Args {
     /// Points: a CSV file with the header x,y,z.
     #[arg(value_name = "POINTS.csv")]
     points: PathBuf,
+    /// Expectation of a regularized technique: camera, light, symmetric, merge or linked.
+    #[arg(long, value_name = "T", requires = "bandwidth")]
+    technique: Option<String>,
+    /// Bandwidth: an angle in radians (camera, light, symmetric) or a radius in metres (merge, linked); several,
+    /// separated by commas, are averaged.
+    #[arg(long, value_name = "A", requires = "technique", value_delimiter = ',')]
+    bandwidth: Vec<f64>,
+    /// Kernel: cone, epanechnikov, vmf, disc or biweight (default: cone, or disc for merge).
+    #[arg(long, value_name = "K", requires = "technique")]
+    kernel: Option<String>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -34,6 +51,7 @@ struct Answer {
     error_bound: f64,
     roots: u32,
     singularity: Option<f64>,
+    second_moment: Option<f64>,
 }
 
 /// Runs the command.
@@ -42,26 +60,79 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let file = args.points.display().to_string();
     let text = std::fs::read_to_string(&args.points).map_err(|e| Error::read(&file, e))?;
     let truth = FloorTruth::new(&entry);
+    let regularized = regularized(args, &entry)?;
     let mut answers = vec![];
     for (n, point) in read_points(&file, &text)?.into_iter().enumerate() {
         check_on_floor(&file, &entry, &truth, &point)?;
         let [x, y, _] = point.at;
-        answers.extend(truth.at(x, y).into_iter().map(|t| Answer {
-            id: n + 1,
-            class: t.class.to_string(),
-            irradiance: t.irradiance.value,
-            radiance: truth.albedo() * t.irradiance.value / core::f64::consts::PI,
-            error_bound: t.irradiance.error,
-            roots: t.irradiance.roots,
-            singularity: t.singularity,
+        answers.extend(truth.at(x, y).into_iter().map(|t| {
+            let moments = match &regularized {
+                Some(e) if t.class.is_caustic() => Some(e.at([x, y, 0.0], TOLERANCE)),
+                _ => None,
+            };
+            let irradiance = moments.map_or(t.irradiance.value, |m| m.mean.value);
+            Answer {
+                id: n + 1,
+                class: t.class.to_string(),
+                irradiance,
+                radiance: truth.albedo() * irradiance / core::f64::consts::PI,
+                error_bound: moments.map_or(t.irradiance.error, |m| m.mean.error),
+                roots: t.irradiance.roots,
+                singularity: t.singularity,
+                second_moment: moments.map(|m| m.second_moment.value),
+            }
         }));
     }
     super::print(&if args.json {
-        as_json(&entry.name, &answers)
+        as_json(&entry.name, args, &answers)
     } else {
-        as_csv(&answers)
+        as_csv(&answers, args.technique.is_some())
     });
     Ok(exit::PASS)
+}
+
+/// Relative tolerance of an expectation.
+const TOLERANCE: f64 = 1e-12;
+
+/// The expectation that the options ask for; `None` without them, or where the scene has no regularized class.
+fn regularized(
+    args: &Args,
+    entry: &nephroid_analytic::scene::Entry,
+) -> Result<Option<Expectation>, Error> {
+    let Some(name) = &args.technique else {
+        return Ok(None);
+    };
+    let unknown = |what, e: UnknownName| Error::UnknownName {
+        what,
+        found: e.found,
+        allowed: e.allowed,
+    };
+    let technique: Technique = name.parse().map_err(|e| unknown("technique", e))?;
+    let kernel = match &args.kernel {
+        Some(k) => k.parse::<Kernel>().map_err(|e| unknown("kernel", e))?,
+        None => technique.default_kernel(),
+    };
+    let option = |e: InvalidParameter| Error::Parameter {
+        file: "command line".to_owned(),
+        key: format!("--{}", e.key),
+        found: e.found,
+        allowed: e.allowed,
+    };
+    bandwidth::check(technique, kernel, &args.bandwidth).map_err(option)?;
+    let setting = match &entry.kind {
+        Kind::Diffuse { .. } => None,
+        Kind::PlanarMirror { .. } => PlanarSetting::of_entry(entry).map_err(option)?,
+        _ => {
+            return Err(option(InvalidParameter {
+                key: "technique".to_owned(),
+                found: format!("{technique} for a scene of kind {}", entry.kind.name()),
+                allowed: "scenes of kind diffuse or planar-mirror".to_owned(),
+            }));
+        }
+    };
+    setting
+        .map(|s| Expectation::new(s, technique, kernel, &args.bandwidth).map_err(option))
+        .transpose()
 }
 
 /// A point and the line it stands on.
@@ -155,11 +226,11 @@ fn finite(value: f64) -> Value {
     }
 }
 
-fn as_json(scene: &str, answers: &[Answer]) -> String {
+fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
     let answers: Vec<_> = answers
         .iter()
         .map(|a| {
-            json!({
+            let mut answer = json!({
                 "id": a.id,
                 "class": a.class,
                 "E": finite(a.irradiance),
@@ -167,20 +238,45 @@ fn as_json(scene: &str, answers: &[Answer]) -> String {
                 "error_bound": finite(a.error_bound),
                 "roots": a.roots,
                 "singularity": a.singularity.map_or(Value::Null, finite),
-            })
+            });
+            if args.technique.is_some() {
+                answer["second_moment"] = a.second_moment.map_or(Value::Null, finite);
+            }
+            answer
         })
         .collect();
-    json!({ "schema": "nephroid-probe/1", "scene": scene, "answers": answers }).to_string()
+    let mut top = json!({ "schema": "nephroid-probe/1", "scene": scene });
+    if let Some(technique) = &args.technique {
+        top["technique"] = json!(technique);
+        top["bandwidths"] = json!(args.bandwidth);
+        top["kernel"] = json!(args.kernel);
+    }
+    top["answers"] = json!(answers);
+    top.to_string()
 }
 
-fn as_csv(answers: &[Answer]) -> String {
-    let mut lines = vec!["id,class,E,L,error_bound,roots,singularity".to_owned()];
+fn as_csv(answers: &[Answer], regularized: bool) -> String {
+    let mut header = "id,class,E,L,error_bound,roots,singularity".to_owned();
+    if regularized {
+        header += ",second_moment";
+    }
+    let mut lines = vec![header];
     lines.extend(answers.iter().map(|a| {
-        let singularity = a.singularity.map_or(String::new(), |s| format!("{s:e}"));
-        format!(
-            "{},{},{:e},{:e},{:.1e},{},{singularity}",
-            a.id, a.class, a.irradiance, a.radiance, a.error_bound, a.roots
-        )
+        let optional = |v: Option<f64>| v.map_or(String::new(), |s| format!("{s:e}"));
+        let mut line = format!(
+            "{},{},{:e},{:e},{:.1e},{},{}",
+            a.id,
+            a.class,
+            a.irradiance,
+            a.radiance,
+            a.error_bound,
+            a.roots,
+            optional(a.singularity)
+        );
+        if regularized {
+            line += &format!(",{}", optional(a.second_moment));
+        }
+        line
     }));
     lines.join("\n")
 }

@@ -7,6 +7,7 @@
 //!
 //! Each other schema is one more arm of [`evaluate`].
 
+mod bandwidth;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
@@ -23,6 +24,8 @@ pub use crate::evaluate::report::{Configuration, Item, Placed, Report, Row};
 
 /// The schema of tables of points.
 pub const REFERENCE: &str = "nephroid-theory-reference/1";
+/// The schema of tables of expectations at finite bandwidth.
+pub const BANDWIDTH: &str = "nephroid-theory-bandwidth/1";
 
 /// Evaluates the text of a reference file; `file` is its name for messages.
 ///
@@ -37,7 +40,11 @@ pub fn evaluate(file: &str, text: &str) -> Result<Report, Error> {
     let top = Object::top(file, &value)?;
     match top.text("schema")? {
         REFERENCE => evaluate_reference(&top),
-        other => Err(top.error("schema", &format!("`{other}`"), REFERENCE)),
+        BANDWIDTH => bandwidth::evaluate(&top),
+        other => {
+            let allowed = format!("{REFERENCE} or {BANDWIDTH}");
+            Err(top.error("schema", &format!("`{other}`"), &allowed))
+        }
     }
 }
 

@@ -25,6 +25,8 @@ pub struct Row {
     pub near_singularity: bool,
     /// The expected value, if the file has one.
     pub expected: Option<f64>,
+    /// Relative size of one unit in the last of the digits that an expected value was rounded to, 0 where it is not known.
+    pub last_digit: f64,
     /// |value - expected|/|expected|, or |value| over the configuration's largest value where 0 is expected.
     pub relative_difference: Option<f64>,
 }
@@ -48,7 +50,7 @@ impl Row {
         } else if self.near_singularity {
             tolerance.max(self.allowed_by_conditioning())
         } else {
-            tolerance
+            tolerance.max(self.last_digit)
         }
     }
 
@@ -166,6 +168,25 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
+    /// Adds a value compared with one key of another object, down to the last digit that is written there.
+    ///
+    /// # Errors
+    /// [`Error::Content`] if the expected value is not a finite number.
+    pub fn add_as(
+        &mut self,
+        name: &str,
+        estimate: Estimate<f64>,
+        object: &Object<'_>,
+        key: &str,
+    ) -> Result<(), Error> {
+        self.push(name.to_owned(), estimate, object.expected(key)?);
+        let written = object.get(key).and_then(|v| v.as_str());
+        if let (Some(row), Some(text)) = (self.rows.last_mut(), written) {
+            row.last_digit = last_digit(text);
+        }
+        Ok(())
+    }
+
     fn push(&mut self, key: String, estimate: Estimate<f64>, expected: Option<f64>) {
         let conditioning = estimate.conditioning();
         self.rows.push(Row {
@@ -175,6 +196,7 @@ impl<'a> Rows<'a> {
             conditioning,
             near_singularity: self.near_singularity && !(conditioning <= NEAR_SINGULARITY),
             expected,
+            last_digit: 0.0,
             relative_difference: None,
         });
     }
@@ -284,6 +306,21 @@ impl<'a> Rows<'a> {
             singularity,
         })
     }
+}
+
+/// Relative size of one unit in the last digit of a decimal number that is visibly rounded: 8 to 15 significant digits.
+/// Fewer are an exact short decimal, more are below the precision of this program.
+fn last_digit(text: &str) -> f64 {
+    let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+    let digits = mantissa
+        .trim_start_matches(['+', '-', '0', '.'])
+        .bytes()
+        .filter(u8::is_ascii_digit)
+        .count();
+    if !(8..=15).contains(&digits) {
+        return 0.0;
+    }
+    (1..digits).fold(1.0, |unit, _| unit / 10.0)
 }
 
 fn general_class(name: &str) -> String {

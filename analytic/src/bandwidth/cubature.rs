@@ -1,5 +1,6 @@
 //! Integrals over convex polygons on the film: the rule of Genz & Malik (1980), degree 7 with an embedded degree 5, on
-//! rectangles and, collapsed (Duffy), on triangles; the piece with the largest error is split until all are good enough.
+//! bilinear quadrilaterals (a triangle has two corners at one place); those with the largest errors are halved, across
+//! the direction in which the integrand varies most, until the sum is good enough.
 
 use libm::sqrt;
 
@@ -18,12 +19,10 @@ pub(super) struct Value {
     pub plain: bool,
 }
 
-#[derive(Clone, Debug)]
-enum Shape {
-    /// Lower corner and size.
-    Rectangle(Point, Point),
-    Triangle([Point; 3]),
-}
+/// A convex quadrilateral, corners in order: the image of the unit square under (s, t) → (1−s)(1−t) a + s(1−t) b + s t c +
+/// (1−s) t d.
+#[derive(Clone, Copy, Debug)]
+struct Shape([Point; 4]);
 
 #[derive(Clone, Debug)]
 struct Piece {
@@ -164,11 +163,10 @@ impl<F: Fn(f64, f64) -> Value, P: Fn(f64, f64) -> [f64; 2]> Integrand<'_, F, P> 
                 .fold(0.0, f64::max)
         };
         let (ru, rv) = (rough(0), rough(1));
-        let split = match &shape {
-            Shape::Rectangle(_, size) if (ru - rv).abs() <= 0.1 * (ru + rv) => {
-                usize::from(size[1] > size[0])
-            }
-            _ => usize::from(rv > ru),
+        let split = if (ru - rv).abs() <= 0.1 * (ru + rv) {
+            shape.longer()
+        } else {
+            usize::from(rv > ru)
         };
         Piece {
             shape,
@@ -181,7 +179,7 @@ impl<F: Fn(f64, f64) -> Value, P: Fn(f64, f64) -> [f64; 2]> Integrand<'_, F, P> 
 
     /// Whether an edge of the piece lies on the border of the set (not merely on the line through it).
     fn touches_border(&self, shape: &Shape) -> bool {
-        let corners = shape.corners();
+        let Shape(corners) = shape;
         let n = corners.len();
         let on =
             |h: &HalfPlane, p: &Point| h.at(p[0], p[1]).abs() <= 1e-9 * (h.a.abs() + h.b.abs());
@@ -222,88 +220,65 @@ fn total(list: &[Piece]) -> Pair {
 
 impl Piece {
     fn halves(&self) -> [Shape; 2] {
-        match &self.shape {
-            Shape::Rectangle(low, size) => {
-                let (mut first, mut second) = (*size, *low);
-                first[self.split] *= 0.5;
-                second[self.split] += first[self.split];
-                [
-                    Shape::Rectangle(*low, first),
-                    Shape::Rectangle(second, first),
-                ]
-            }
-            Shape::Triangle(t) => {
-                let length = |a: Point, b: Point| {
-                    let d = [a[0] - b[0], a[1] - b[1]];
-                    d[0] * d[0] + d[1] * d[1]
-                };
-                // Bisection of the longest edge keeps triangles from degenerating.
-                let longest = (0..3)
-                    .max_by(|&i, &j| {
-                        length(t[i], t[(i + 1) % 3]).total_cmp(&length(t[j], t[(j + 1) % 3]))
-                    })
-                    .unwrap_or(0);
-                let (a, b, c) = (t[longest], t[(longest + 1) % 3], t[(longest + 2) % 3]);
-                let m = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-                [Shape::Triangle([c, a, m]), Shape::Triangle([c, m, b])]
-            }
+        let Shape([a, b, c, d]) = self.shape;
+        let middle = |p: Point, q: Point| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+        if self.split == 0 {
+            let (m, n) = (middle(a, b), middle(d, c));
+            [Shape([a, m, n, d]), Shape([m, b, c, n])]
+        } else {
+            let (m, n) = (middle(a, d), middle(b, c));
+            [Shape([a, b, n, m]), Shape([m, n, c, d])]
         }
     }
+}
+
+fn minus(p: Point, q: Point) -> Point {
+    [p[0] - q[0], p[1] - q[1]]
+}
+
+fn cross(p: Point, q: Point) -> f64 {
+    p[0] * q[1] - p[1] * q[0]
 }
 
 impl Shape {
     /// The point of a node, and the area element: the weights sum to 1.
     fn at(&self, node: Point) -> (Point, f64) {
+        let Shape([a, b, c, d]) = *self;
         let (s, t) = (0.5 * (1.0 + node[0]), 0.5 * (1.0 + node[1]));
-        match self {
-            Shape::Rectangle(low, size) => (
-                [low[0] + s * size[0], low[1] + t * size[1]],
-                size[0] * size[1],
-            ),
-            Shape::Triangle([a, b, c]) => (
-                core::array::from_fn(|i| a[i] + s * (b[i] - a[i] + t * (c[i] - b[i]))),
-                2.0 * s * self.area(),
-            ),
-        }
+        let (ab, dc) = (minus(b, a), minus(c, d));
+        let (ad, bc) = (minus(d, a), minus(c, b));
+        let twist = minus(dc, ab);
+        let point = core::array::from_fn(|i| a[i] + s * ab[i] + t * ad[i] + s * t * twist[i]);
+        let along = [ab[0] + t * twist[0], ab[1] + t * twist[1]];
+        let across = [ad[0] + s * (bc[0] - ad[0]), ad[1] + s * (bc[1] - ad[1])];
+        (point, cross(along, across).abs())
     }
 
     fn area(&self) -> f64 {
-        match self {
-            Shape::Rectangle(_, size) => size[0] * size[1],
-            Shape::Triangle([a, b, c]) => {
-                let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                0.5 * cross.abs()
-            }
-        }
+        let Shape([a, b, c, d]) = *self;
+        0.5 * cross(minus(c, a), minus(d, b)).abs()
     }
 
-    fn corners(&self) -> Vec<Point> {
-        match self {
-            Shape::Rectangle(l, s) => {
-                let h = [l[0] + s[0], l[1] + s[1]];
-                vec![*l, [h[0], l[1]], h, [l[0], h[1]]]
-            }
-            Shape::Triangle(t) => t.to_vec(),
-        }
+    /// The direction in which the shape is longer.
+    fn longer(&self) -> usize {
+        let Shape([a, b, c, d]) = *self;
+        let length = |p: Point| p[0] * p[0] + p[1] * p[1];
+        let s = length(minus(b, a)) + length(minus(c, d));
+        let t = length(minus(d, a)) + length(minus(c, b));
+        usize::from(t > s)
     }
 }
 
-/// A polygon as one rectangle or a fan of triangles.
+/// A convex polygon as quadrilaterals that share its first corner, the last one perhaps a triangle.
 fn shapes(polygon: &Polygon) -> Vec<Shape> {
     let c = &polygon.corners;
-    let upright = c.len() == 4
-        && c[0][1] == c[1][1]
-        && c[1][0] == c[2][0]
-        && c[2][1] == c[3][1]
-        && c[3][0] == c[0][0];
-    if upright {
-        return vec![Shape::Rectangle(
-            c[0],
-            [c[1][0] - c[0][0], c[2][1] - c[1][1]],
-        )];
-    }
-    (2..c.len())
-        .map(|k| Shape::Triangle([c[0], c[k - 1], c[k]]))
+    (1..c.len().saturating_sub(1))
+        .step_by(2)
+        .map(|k| {
+            // A triangle collapses onto the corner that all pieces share.
+            let last = c.get(k + 2).unwrap_or(&c[0]);
+            Shape([c[0], c[k], c[k + 1], *last])
+        })
         .collect()
 }
 
@@ -328,8 +303,8 @@ mod tests {
 
     #[test]
     fn degree_seven_on_a_rectangle_and_six_on_a_triangle() {
-        let square = Shape::Rectangle([0.0, 0.0], [1.0, 1.0]);
-        let triangle = Shape::Triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+        let square = Shape([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        let triangle = Shape([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
         let sum = |shape: &Shape, f: &dyn Fn(f64, f64) -> f64| -> f64 {
             GROUPS
                 .iter()

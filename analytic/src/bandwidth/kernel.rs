@@ -337,7 +337,7 @@ impl Profile {
                     }
                     r
                 };
-                if let Some(r) = escalate(&mut start, tolerance, |o| whole(o, density)) {
+                if let Some(r) = escalate(&mut start, tolerance, &sum, |o| whole(o, density)) {
                     sum.add(&r);
                     continue;
                 }
@@ -363,7 +363,7 @@ impl Profile {
         density: &mut impl FnMut(f64) -> [f64; 2],
         sum: &mut Pair,
     ) {
-        let result = escalate(start, tolerance, |order| {
+        let result = escalate(start, tolerance, sum, |order| {
             gauss(&self.rules[order], a, b, |g| {
                 let (h, v) = (self.heights(piece, g), density(g));
                 [h[0] * v[0], h[1] * v[1]]
@@ -410,11 +410,12 @@ pub(super) fn gauss(
     r
 }
 
-/// Raises the order until two neighbouring rules agree; `start` remembers the order that was enough last time. `None` if
-/// the highest order is not enough.
+/// Raises the order until two neighbouring rules agree to a part of what is integrated here or was (`sum`) before;
+/// `start` remembers the order that was enough last time. `None` if the highest order is not enough.
 pub(super) fn escalate(
     start: &mut usize,
     tolerance: f64,
+    sum: &Pair,
     mut rule: impl FnMut(usize) -> ([f64; 2], [f64; 2]),
 ) -> Option<Pair> {
     let first = (*start).clamp(1, ORDERS.len() - 1);
@@ -423,7 +424,8 @@ pub(super) fn escalate(
         let (value, absolute) = rule(order);
         let error: [f64; 2] =
             core::array::from_fn(|k| error_of_better((value[k] - before[k]).abs(), absolute[k]));
-        if (0..2).all(|k| error[k] <= tolerance * absolute[k] + f64::MIN_POSITIVE)
+        let scale = |k: usize| absolute[k].max(sum.value[k].abs());
+        if (0..2).all(|k| error[k] <= tolerance * scale(k) + f64::MIN_POSITIVE)
             || (order + 1 == ORDERS.len() && (0..2).all(|k| error[k] <= 1e-13 * absolute[k]))
         {
             *start = order;

@@ -57,7 +57,7 @@ fn estimate(difference: f64, absolute: f64, factor: f64) -> f64 {
 }
 
 /// Orders of the Gauss–Legendre rules; each is about 3/2 of the one before.
-pub(super) const ORDERS: [usize; 6] = [4, 7, 11, 17, 26, 40];
+pub(super) const ORDERS: [usize; 7] = [2, 4, 7, 11, 17, 26, 40];
 
 /// The Gauss–Legendre rules of all [`ORDERS`], on [0, 1].
 pub(super) fn gauss_rules() -> Vec<Rule> {

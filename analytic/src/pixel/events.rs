@@ -25,7 +25,11 @@ pub fn search<const N: usize>(
     breaks: &mut Vec<Break>,
 ) {
     // Just inside, where the slice is not cut by both neighbours' borders at once.
-    let at = |k: usize| low + (high - low) * (k as f64 + 0.02) / (SAMPLES as f64 - 0.96);
+    let inset = 1e-9 * (high - low);
+    let at = |k: usize| {
+        let x = low + (high - low) * (k as f64 / (SAMPLES as f64 - 1.0));
+        x.clamp(low + inset, high - inset)
+    };
     let samples: [Option<Probe<N>>; SAMPLES] = core::array::from_fn(|k| probe(at(k)));
     let labels = |p: &Option<Probe<N>>| p.map(|p| p.labels);
     for k in 1..SAMPLES {

@@ -248,7 +248,7 @@ pub struct Ladder {
 impl Default for Ladder {
     fn default() -> Self {
         Ladder {
-            rules: [2, 3, 5, 8, 12].map(Rule::gauss).into(),
+            rules: [3, 4, 6, 9, 13].map(Rule::gauss).into(),
         }
     }
 }

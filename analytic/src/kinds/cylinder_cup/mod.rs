@@ -218,6 +218,12 @@ impl<S: Scalar> CylinderCup<S> {
                 sum.error += root.irradiance;
             }
         });
+        // At the foot of the wall rounding decides whether the point is in front of it.
+        let a = self.wall.radius;
+        let r = x.hypot(y);
+        if (r - a).abs() <= rounding_error(a, S::ZERO) && self.wall.covers(x / r) {
+            sum.error = S::ONE / S::ZERO;
+        }
         sum
     }
 

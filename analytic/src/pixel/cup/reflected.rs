@@ -124,7 +124,7 @@ impl CupImage {
             slice.map_or(0, |s| self.events(&s).1)
         };
         if splits > 0 {
-            let at = [0.02, 0.5, 0.98].map(|x| a.azimuth + length * x);
+            let at = [1e-6, 0.5, 1.0 - 1e-6].map(|x| a.azimuth + length * x);
             for pair in at.windows(2) {
                 let left = structure(pair[0]);
                 if left != structure(pair[1]) {
