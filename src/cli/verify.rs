@@ -11,6 +11,7 @@ use crate::judge::hypotheses::LEVEL;
 use crate::output::write_text;
 use crate::report;
 use crate::verify::effort::{BANDWIDTH, Effort};
+use crate::verify::expected::Truths;
 use crate::verify::run::{self, Request};
 use crate::verify::suite::{Coverage, LeftOut, Subject};
 use crate::{entry, exit};
@@ -92,7 +93,8 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(200));
-    let outcome = run::run(&request, &|position, of, scene, integrator| {
+    let mut truths = Truths::for_margin(request.margin);
+    let outcome = run::run(&request, &mut truths, &|position, of, scene, integrator| {
         bar.set_length(of as u64);
         bar.set_position(position as u64);
         bar.set_message(format!("{scene} {integrator}"));

@@ -1,11 +1,15 @@
 //! How many replicates decide, and what could have been seen.
 //!
-//! Under a bias b the t statistic is, for the 32 or more replicates that are asked for, a central t shifted by b/s. So
-//! a test that rejects beyond t_c has power P(T > t_c - b/s), and a power of 1 - β needs b ≥ (t_c + t_β) s.
+//! Under a bias of δ standard errors the statistic is a non-central t. With ν degrees of freedom and the critical value t
+//! [Johnson & Welch 1940, after Jennett & Welch]
+//!
+//! > P(T > t) ≈ Φ((δ - t (1 - 1/(4ν))) / √(1 + t²/(2ν))),
+//!
+//! to within 0.01 for the 32 or more replicates that are asked for.
 
 use nephroid_analytic::camera::Bounded;
 
-use super::distributions::{student_quantile, student_survival};
+use super::distributions::{normal_survival, student_quantile};
 use super::evidence::{FEWEST_REPLICATES, Sample};
 use super::hypotheses::Levels;
 
@@ -23,14 +27,36 @@ pub fn usable_margin(truth: Bounded, margin: f64) -> f64 {
     margin * truth.value - truth.error * (2.0 + margin)
 }
 
+/// z with P(Z > z) = 1 - [`PLANNED_DIFFERENCE`].
+const Z_DIFFERENCE: f64 = 2.326_347_874;
+/// z with P(Z > z) = (1 - [`PLANNED_EQUIVALENCE`]) / 2: both one-sided tests must reject, and fail on opposite sides.
+const Z_EQUIVALENCE: f64 = 3.890_591_886;
+/// z with P(Z > z) = 1 - [`DETECTION_POWER`].
+const Z_DETECTION: f64 = 1.281_551_566;
+
+/// Centre and scale of the approximation in the module's head.
+fn centre_and_scale(critical: f64, dof: f64) -> (f64, f64) {
+    let centre = critical * (1.0 - 0.25 / dof);
+    (centre, libm::sqrt(1.0 + 0.5 * critical * critical / dof))
+}
+
+/// Power of a one-sided test under a bias of so many standard errors.
+fn one_sided_power(bias: f64, critical: f64, dof: f64) -> f64 {
+    let (centre, scale) = centre_and_scale(critical, dof);
+    normal_survival((centre - bias) / scale)
+}
+
+/// The bias, in standard errors, at which the power is that of the quantile.
+fn bias_for(quantile: f64, critical: f64, dof: f64) -> f64 {
+    let (centre, scale) = centre_and_scale(critical, dof);
+    centre + quantile * scale
+}
+
 /// Number of standard errors that the margin must hold for the planned powers.
 fn standard_errors_needed(levels: Levels, dof: f64) -> f64 {
-    let difference = student_quantile(0.5 * levels.different, dof)
-        + student_quantile(1.0 - PLANNED_DIFFERENCE, dof);
-    // Both one-sided tests must reject, and fail on opposite sides.
-    let equivalence = student_quantile(levels.equivalent, dof)
-        + student_quantile(0.5 * (1.0 - PLANNED_EQUIVALENCE), dof);
-    difference.max(equivalence)
+    let difference = student_quantile(0.5 * levels.different, dof);
+    let equivalence = student_quantile(levels.equivalent, dof);
+    bias_for(Z_DIFFERENCE, difference, dof).max(bias_for(Z_EQUIVALENCE, equivalence, dof))
 }
 
 /// Fewest replicates with which a check of the given variance per replicate is decided at the planned powers. `None` if
@@ -49,15 +75,16 @@ pub fn replicates_needed(
         let errors = standard_errors_needed(levels, dof) / usable;
         libm::ceil(errors * errors * variance)
     };
-    // The quantiles fall with the replicates: iterate from below until nothing changes.
-    let mut replicates = FEWEST_REPLICATES as f64;
-    for _ in 0..50 {
-        let next = needed(replicates - 1.0).max(FEWEST_REPLICATES as f64);
-        if next <= replicates {
+    // The quantiles fall with the degrees of freedom: from many down, then to and fro around the fixed point.
+    let fewest = FEWEST_REPLICATES as f64;
+    let mut replicates = needed(1e6).max(fewest);
+    for _ in 0..20 {
+        let next = needed(replicates - 1.0).max(fewest);
+        let settled = (next - replicates).abs() <= 1.0;
+        replicates = next.max(if settled { replicates } else { fewest });
+        if settled {
             break;
         }
-        // Half-way in logarithm damps the overshoot of few degrees of freedom.
-        replicates = next.min(libm::ceil(libm::sqrt(next * replicates)) + 1.0);
     }
     Some(replicates as u64)
 }
@@ -76,11 +103,51 @@ pub fn of_sample(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -
     let (error, dof) = (sample.standard_error(), sample.dof());
     let usable = usable_margin(truth, margin) / error;
     let critical = student_quantile(0.5 * levels.different, dof);
-    let difference = student_survival(critical - usable, dof);
-    let one_side = student_survival(usable - student_quantile(levels.equivalent, dof), dof);
-    let detectable = (critical + student_quantile(1.0 - DETECTION_POWER, dof)) * error;
+    let difference = one_sided_power(usable, critical, dof);
+    let equivalence = one_sided_power(usable, student_quantile(levels.equivalent, dof), dof);
+    let detectable = bias_for(Z_DETECTION, critical, dof) * error;
     Power {
-        power: difference.min((1.0 - 2.0 * one_side).max(0.0)),
+        power: difference.min((2.0 * equivalence - 1.0).max(0.0)),
         minimum_detectable_bias: (detectable + truth.error) / truth.value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quantiles_are_those_of_the_powers() {
+        for (z, p) in [
+            (Z_DIFFERENCE, 1.0 - PLANNED_DIFFERENCE),
+            (Z_EQUIVALENCE, 0.5 * (1.0 - PLANNED_EQUIVALENCE)),
+            (Z_DETECTION, 1.0 - DETECTION_POWER),
+        ] {
+            assert!((normal_survival(z) / p - 1.0).abs() < 1e-8);
+        }
+    }
+
+    /// What is planned is what is found, and one replicate less would not do.
+    #[test]
+    fn the_plan_is_the_smallest_that_has_the_power() {
+        let levels = Levels::shared(1e-6, 1e-3, 20);
+        let truth = Bounded {
+            value: 2.0,
+            error: 1e-4,
+        };
+        for deviation in [0.05, 0.2, 1.0] {
+            let n = replicates_needed(deviation * deviation, truth, 0.02, levels).unwrap();
+            let enough = |n: f64| {
+                standard_errors_needed(levels, n - 1.0) * deviation / libm::sqrt(n)
+                    <= usable_margin(truth, 0.02)
+            };
+            assert!(enough(n as f64 + 1.0), "{deviation}: {n}");
+            assert!(
+                n == FEWEST_REPLICATES as u64 || !enough(n as f64 - 2.0),
+                "{deviation}: {n}"
+            );
+        }
+        assert_eq!(replicates_needed(1.0, truth, 1e-5, levels), None);
+        assert_eq!(replicates_needed(f64::NAN, truth, 0.02, levels), None);
     }
 }

@@ -150,7 +150,10 @@ pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> F
         (false, true) => State::Different,
         (false, false) => State::Undecided,
     };
-    let needed = power::replicates_needed(sample.variance, truth, margin, levels);
+    let needed = match state {
+        State::Undecided => power::replicates_needed(sample.variance, truth, margin, levels),
+        _ => None,
+    };
     let reason = match state {
         State::Equivalent if bias_established => {
             "a bias inside the margin is established".to_owned()
@@ -173,9 +176,7 @@ pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> F
         power: Some(power),
         minimum_detectable_bias: Some(minimum_detectable_bias),
         // With an effect near the margin's edge the plan for no bias is not enough: at least twice as many.
-        replicates_needed: needed
-            .filter(|_| state == State::Undecided)
-            .map(|n| n.max(2 * sample.replicates as u64)),
+        replicates_needed: needed.map(|n| n.max(2 * sample.replicates as u64)),
         reason,
     }
 }

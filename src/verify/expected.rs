@@ -12,18 +12,40 @@ use crate::error::Error;
 use crate::integrators::{Plan, Technique, Treatment};
 use crate::{expectation, truth};
 
-/// Relative tolerance of the class means: far below any margin, and part of every test.
-const TOLERANCE: f64 = 1e-5;
+/// Relative tolerance of the class means as a part of the margin. What is reached is a part of every test, and takes about
+/// this much from the margin.
+const TOLERANCE_PER_MARGIN: f64 = 0.02;
 
-/// Truths of a suite, each computed once.
-#[derive(Default)]
+/// What a finite-bandwidth expectation depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Finite {
+    scene: usize,
+    technique: Mollified,
+    kernel: Kernel,
+    bandwidths: Vec<f64>,
+}
+
+type ClassMoments = Vec<(PathClass, Moments)>;
+
+/// Truths of a list of scenes, each computed once.
 pub struct Truths {
+    tolerance: f64,
     exact: HashMap<usize, Vec<Bounded>>,
+    finite: Vec<(Finite, ClassMoments)>,
 }
 
 impl Truths {
+    /// Truths that are exact enough for an equivalence margin (relative to the truth).
+    pub fn for_margin(margin: f64) -> Self {
+        Truths {
+            tolerance: TOLERANCE_PER_MARGIN * margin,
+            exact: HashMap::new(),
+            finite: Vec::new(),
+        }
+    }
+
     /// Per class of the plan, what its mean over the image should be; `None` for classes that are not sampled. `scene` is
-    /// the entry's position in the suite; `bandwidths` are those of the iterations, which all have as many paths.
+    /// the entry's position in the list; `bandwidths` are those of the iterations, which all have as many paths.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a kernel or a bandwidth that does not fit the technique.
@@ -35,55 +57,62 @@ impl Truths {
         kernel: Option<Kernel>,
         bandwidths: &[f64],
     ) -> Result<Vec<Option<Bounded>>, Error> {
-        let mut regularized: Option<(Technique, Vec<(PathClass, Moments)>)> = None;
         let mut result = Vec::with_capacity(plan.len());
         for class in plan {
             result.push(match class.treatment {
                 Treatment::NotSampled => None,
                 Treatment::Exact(_) => {
+                    let tolerance = self.tolerance;
                     let means = self
                         .exact
                         .entry(scene)
-                        .or_insert_with(|| truth::image(entry, TOLERANCE).class_means());
+                        .or_insert_with(|| truth::image(entry, tolerance).class_means());
                     let position = entry.kind.classes().iter().position(|&c| c == class.class);
                     position.map(|p| means[p])
                 }
-                Treatment::Regularized(technique) => {
-                    // One computation serves all classes of a technique.
-                    let known = regularized.take().filter(|(t, _)| *t == technique);
-                    let (_, means) = match known {
-                        Some(known) => regularized.insert(known),
-                        None => regularized
-                            .insert((technique, finite(entry, technique, kernel, bandwidths)?)),
-                    };
-                    let mean = means.iter().find(|(c, _)| *c == class.class);
-                    mean.map(|(_, m)| m.mean)
-                }
+                Treatment::Regularized(technique) => match mollified(technique) {
+                    Some(technique) => {
+                        let key = Finite {
+                            scene,
+                            technique,
+                            kernel: kernel.unwrap_or(default_kernel(technique)),
+                            bandwidths: bandwidths.to_vec(),
+                        };
+                        let means = self.finite(entry, key)?;
+                        let mean = means.iter().find(|(c, _)| *c == class.class);
+                        mean.map(|(_, m)| m.mean)
+                    }
+                    None => None,
+                },
             });
         }
         Ok(result)
     }
-}
 
-/// Expectations of the regularized classes; none for a technique that the truth does not know.
-fn finite(
-    entry: &Entry,
-    technique: Technique,
-    kernel: Option<Kernel>,
-    bandwidths: &[f64],
-) -> Result<Vec<(PathClass, Moments)>, Error> {
-    let Some(technique) = mollified(technique) else {
-        return Ok(Vec::new());
-    };
-    let kernel = kernel.unwrap_or(default_kernel(technique));
-    expectation::class_means(entry, technique, kernel, bandwidths, TOLERANCE).map_err(|e| {
-        Error::Parameter {
-            file: "command line".to_owned(),
-            key: format!("--{}", e.key),
-            found: e.found,
-            allowed: e.allowed,
-        }
-    })
+    /// Expectations of the regularized classes.
+    fn finite(&mut self, entry: &Entry, key: Finite) -> Result<&ClassMoments, Error> {
+        let position = match self.finite.iter().position(|(k, _)| *k == key) {
+            Some(position) => position,
+            None => {
+                let means = expectation::class_means(
+                    entry,
+                    key.technique,
+                    key.kernel,
+                    &key.bandwidths,
+                    self.tolerance,
+                )
+                .map_err(|e| Error::Parameter {
+                    file: "command line".to_owned(),
+                    key: format!("--{}", e.key),
+                    found: e.found,
+                    allowed: e.allowed,
+                })?;
+                self.finite.push((key, means));
+                self.finite.len() - 1
+            }
+        };
+        Ok(&self.finite[position].1)
+    }
 }
 
 /// The name under which the truth knows a regularizing technique.

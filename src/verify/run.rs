@@ -17,9 +17,9 @@ use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
 use crate::judge::verdict::{Finding, State, decide};
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
-const MERGING_ITERATIONS: u32 = 16;
-/// Paths of an iteration that merges: the work grows with the square, the information does not.
-const MERGING_PATHS: u64 = 1 << 14;
+const MERGING_ITERATIONS: u32 = 8;
+/// Paths of an iteration that merges.
+const MERGING_PATHS: u64 = 1 << 15;
 /// Paths of a replicate of any other method: clearing and summing the film costs a few percent of drawing them.
 const PATHS: u64 = 1 << 18;
 
@@ -49,12 +49,13 @@ pub struct Request {
     pub kernel: Option<Kernel>,
 }
 
-/// Runs the suite. `progress` hears of each pair before it starts: its position, their number, scene and integrator.
+/// Runs the suite. `truths` belongs to the request's list of scenes and can serve several requests. `progress` hears of each pair before it starts: its position, their number, scene and integrator.
 ///
 /// # Errors
 /// A kernel or a bandwidth that does not fit.
 pub fn run(
     request: &Request,
+    truths: &mut Truths,
     progress: &dyn Fn(usize, usize, &str, &str),
 ) -> Result<Outcome, Error> {
     let started = Instant::now();
@@ -69,13 +70,12 @@ pub fn run(
     let planned: u64 = pairs.iter().map(Pair::checks).sum();
     let checks = planned.max(request.checks.unwrap_or(0));
     let levels = Levels::shared(request.level, EQUIVALENCE_LEVEL, checks);
-    let mut truths = Truths::default();
     let mut verdicts = Vec::new();
     for (position, pair) in pairs.iter().enumerate() {
         let scene = &request.scenes[pair.scene].entry.name;
         let integrator = request.integrators[pair.integrator].name();
         progress(position, pairs.len(), scene, integrator);
-        verdicts.extend(run_pair(request, pair, levels, checks, &mut truths)?);
+        verdicts.extend(run_pair(request, pair, levels, checks, truths)?);
     }
     Ok(Outcome {
         verdicts,

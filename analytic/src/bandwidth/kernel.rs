@@ -247,7 +247,7 @@ impl Profile {
             let mut weights = Vec::new();
             if stop - start > 1 {
                 for rule in &self.rules {
-                    let m = rule.nodes.len();
+                    let m = rule.iter().count();
                     // Moments of the averaged kernel against Legendre polynomials of the cell, piece by piece, exactly.
                     let exact = &self.rules[ORDERS
                         .iter()
@@ -267,10 +267,10 @@ impl Profile {
                         }
                     }
                     let mut pair = (vec![0.0; m], vec![0.0; m]);
-                    for i in 0..m {
-                        legendre_values(m, 2.0 * rule.nodes[i] - 1.0, &mut values);
+                    for (i, (x, weight)) in rule.iter().enumerate() {
+                        legendre_values(m, 2.0 * x - 1.0, &mut values);
                         for (k, v) in values.iter().enumerate() {
-                            let c = rule.weights[i] * (2.0 * k as f64 + 1.0) * v;
+                            let c = weight * (2.0 * k as f64 + 1.0) * v;
                             pair.0[i] += c * moments[k][0];
                             pair.1[i] += c * moments[k][1];
                         }
@@ -328,7 +328,7 @@ impl Profile {
                 let whole = |order: usize, density: &mut dyn FnMut(f64) -> [f64; 2]| {
                     let mut r = ([0.0; 2], [0.0; 2]);
                     let w = &cell.weights[order];
-                    for (i, x) in self.rules[order].nodes.iter().enumerate() {
+                    for (i, (x, _)) in self.rules[order].iter().enumerate() {
                         let v = density(a + (b - a) * x);
                         for (k, weight) in [w.0[i], w.1[i]].into_iter().enumerate() {
                             r.0[k] += weight * v[k];

@@ -1,0 +1,166 @@
+//! Integrators that are wrong on purpose must be called different, in every run.
+//!
+//! The scene has no factor that is 1 and no bandwidth but the usual one, so that a forgotten factor shows. Margins are wide, because most
+//! of the faults are gross and the time of this test is not unlimited; `examples/calibration.rs` does the same at length.
+
+use nephroid::entry::from_toml;
+use nephroid::integrators::{Fault, Integrator, Settings, by_name};
+use nephroid::judge::hypotheses::LEVEL;
+use nephroid::judge::verdict::State;
+use nephroid::verify::effort::Effort;
+use nephroid::verify::expected::Truths;
+use nephroid::verify::run::{Request, run};
+use nephroid::verify::suite::{Coverage, Subject};
+use nephroid::verify::verdicts::Outcome;
+use nephroid_analytic::class::PathClass;
+
+const WALL: &str = r#"
+name = "wall"
+title = "A mirror on the floor, nothing equal to 1"
+kind = "planar-mirror"
+
+[light]
+position = [0.25, 0.1, 1.9]
+intensity = 3.7
+
+[floor]
+half_width = [2.0, 2.0]
+albedo = 0.6
+
+[mirror]
+center = [0.0, 1.1, 0.7]
+normal = [0.0, -1.0, 0.0]
+edge = [1.0, 0.0, 0.0]
+half_width = 0.8
+half_height = 0.6
+reflectance = 0.7
+
+[camera]
+position = [0.0, -2.6, 1.8]
+look_at = [0.0, 0.6, 0.3]
+field_of_view_degrees = 45.0
+width = 32
+height = 32
+"#;
+
+fn integrator(name: &str, fault: Option<Fault>) -> Box<dyn Integrator> {
+    let settings = Settings {
+        kernel: None,
+        fault,
+    };
+    by_name(name, &settings).unwrap()
+}
+
+fn request(integrators: Vec<Box<dyn Integrator>>, seed: u64, margin: f64) -> Request {
+    let entry = from_toml("wall.toml", WALL).unwrap();
+    let argument = "wall.toml".to_owned();
+    Request {
+        scenes: vec![Subject { argument, entry }],
+        integrators,
+        left_out: Vec::new(),
+        effort: Effort::Quick,
+        coverage: Coverage::Everything,
+        margin,
+        level: LEVEL,
+        checks: None,
+        seed,
+        bandwidth: 0.2,
+        kernel: None,
+    }
+}
+
+fn verdicts(request: &Request, truths: &mut Truths) -> Outcome {
+    run(request, truths, &|_, _, _, _| {}).unwrap()
+}
+
+fn state_of(outcome: &Outcome, class: PathClass) -> State {
+    let class = class.to_string();
+    let verdict = outcome.verdicts.iter().find(|v| v.class == class).unwrap();
+    verdict.finding.state
+}
+
+const ALL: [&str; 5] = ["pt", "pt-reg", "lt", "pm", "ppm"];
+
+/// The classes that an integrator claims.
+fn claimed(name: &str) -> &'static [PathClass] {
+    const LDE: PathClass = PathClass::LDE;
+    const LSDE: PathClass = PathClass::LSDE;
+    const LDSE: PathClass = PathClass::LDSE;
+    const LSDSE: PathClass = PathClass::LSDSE;
+    match name {
+        "pt" => &[LDE, LDSE],
+        "lt" => &[LDE, LSDE],
+        _ => &[LDE, LSDE, LDSE, LSDSE],
+    }
+}
+
+#[test]
+fn without_a_fault_all_are_equivalent() {
+    let integrators = ALL.map(|name| integrator(name, None)).into();
+    let mut truths = Truths::for_margin(0.15);
+    let outcome = verdicts(&request(integrators, 1, 0.15), &mut truths);
+    assert_eq!(outcome.exit_code(), 0, "{outcome:#?}");
+    let equivalent = |s: State| {
+        outcome
+            .verdicts
+            .iter()
+            .filter(|v| v.finding.state == s)
+            .count()
+    };
+    assert_eq!(equivalent(State::Equivalent), 3 + 5 + 3 + 5 + 5);
+    assert_eq!(equivalent(State::NotSampled), 2 + 2);
+}
+
+#[test]
+fn gross_faults_are_different_in_every_run() {
+    let mut truths = Truths::for_margin(0.15);
+    for seed in [1, 2, 3] {
+        for fault in [
+            Fault::CosineTwice,
+            Fault::IntensityForgotten,
+            Fault::ReflectanceForgotten,
+            Fault::RadiusForRadiusSquared,
+        ] {
+            let integrators = ALL.map(|name| integrator(name, Some(fault))).into();
+            let outcome = verdicts(&request(integrators, seed, 0.15), &mut truths);
+            for v in &outcome.verdicts {
+                let class = v.class.parse::<PathClass>();
+                let caustic = class.as_ref().is_ok_and(PathClass::is_caustic);
+                let mirrored = class.as_ref().is_ok_and(|c| *c != PathClass::LDE);
+                let regularized = v.bandwidth.is_some();
+                let hit = class.is_ok()
+                    && match fault {
+                        Fault::ReflectanceForgotten => mirrored,
+                        Fault::RadiusForRadiusSquared => caustic && regularized,
+                        _ => true,
+                    };
+                if hit && v.finding.state != State::NotSampled {
+                    let (name, class) = (&v.integrator, &v.class);
+                    assert_eq!(
+                        v.finding.state,
+                        State::Different,
+                        "{fault:?} {name} {class} {seed}: {:?}",
+                        v.finding
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_class_that_is_dropped_is_missing() {
+    let mut truths = Truths::for_margin(0.15);
+    for name in ALL {
+        for &class in claimed(name) {
+            let integrators = vec![integrator(name, Some(Fault::ClassDropped(class)))];
+            let outcome = verdicts(&request(integrators, 5, 0.15), &mut truths);
+            assert_eq!(
+                state_of(&outcome, class),
+                State::Different,
+                "{name} {class}: {outcome:#?}"
+            );
+            assert_eq!(outcome.exit_code(), 1);
+        }
+    }
+}
