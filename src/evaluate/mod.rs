@@ -10,6 +10,8 @@
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod glass_slab;
+mod planar_chains;
 mod planar_mirror;
 pub mod reading;
 pub mod report;
@@ -49,8 +51,11 @@ fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
         "planar-mirror" => planar_mirror::configuration,
         "cylinder-cup" => cylinder_cup::configuration,
         "flat-interface" => flat_interface::configuration,
+        "glass-slab" => glass_slab::configuration,
+        "planar-chains" => planar_chains::configuration,
         other => {
-            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface";
+            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface, glass-slab, \
+                           planar-chains";
             return Err(top.error("scene", &format!("`{other}`"), allowed));
         }
     };
