@@ -15,6 +15,7 @@ mod planar_chains;
 mod planar_mirror;
 pub mod reading;
 pub mod report;
+mod sphere_mirror;
 
 use nephroid_analytic::kinds::{Estimate, rounding_error};
 use serde_json::Value;
@@ -52,10 +53,12 @@ fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
         "cylinder-cup" => cylinder_cup::configuration,
         "flat-interface" => flat_interface::configuration,
         "glass-slab" => glass_slab::configuration,
+        "concave-sphere" => sphere_mirror::concave,
+        "convex-sphere" => sphere_mirror::convex,
         "planar-chains" => planar_chains::configuration,
         other => {
             let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface, glass-slab, \
-                           planar-chains";
+                           concave-sphere, convex-sphere, planar-chains";
             return Err(top.error("scene", &format!("`{other}`"), allowed));
         }
     };

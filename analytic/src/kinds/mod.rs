@@ -10,6 +10,8 @@ pub mod flat_interface;
 pub mod glass_slab;
 pub mod planar_chains;
 pub mod planar_mirror;
+pub mod singularity;
+pub mod sphere_mirror;
 
 use crate::scalar::Scalar;
 
