@@ -11,9 +11,12 @@ mod bandwidth;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod glass_slab;
+mod planar_chains;
 mod planar_mirror;
 pub mod reading;
 pub mod report;
+mod sphere_mirror;
 
 use nephroid_analytic::kinds::{Estimate, rounding_error};
 use serde_json::Value;
@@ -56,8 +59,13 @@ fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
         "planar-mirror" => planar_mirror::configuration,
         "cylinder-cup" => cylinder_cup::configuration,
         "flat-interface" => flat_interface::configuration,
+        "glass-slab" => glass_slab::configuration,
+        "concave-sphere" => sphere_mirror::concave,
+        "convex-sphere" => sphere_mirror::convex,
+        "planar-chains" => planar_chains::configuration,
         other => {
-            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface";
+            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface, glass-slab, \
+                           concave-sphere, convex-sphere, planar-chains";
             return Err(top.error("scene", &format!("`{other}`"), allowed));
         }
     };

@@ -1,0 +1,441 @@
+//! A spherical mirror over a horizontal receiver that faces up: a concave cap or a convex ball.
+//!
+//! The mirror is the part n · axis ≥ `cap_cos_min` of the sphere with centre c and radius a, n the outward normal. A
+//! mirror point reflects the light to x if it solves Alhazen's problem ([`circle`]) in the plane of c, light and x, with
+//! both legs on the reflecting side. With r1, r2 the lengths of the legs, i the incidence angle, and σ = 1 for a concave,
+//! -1 for a convex mirror,
+//!
+//! ```text
+//! E = I R cos θ_x/|J_t J_s|,    J_t = r1 + r2 - 2σ r1 r2/(a cos i),    J_s = r1 + r2 - 2σ r1 r2 cos i/a,
+//! ```
+//!
+//! and for parallel light E = E0 R cos θ_x/|(1 - 2σ r2/(a cos i))(1 - 2σ r2 cos i/a)| (theory §0.2, blocks E and F). In
+//! units of a, g' = ∓ cos i J_t at a root, and |s × b| = sin i |J_s| (derived here): the second form loses nothing next to
+//! the axis through c and light, where J_s = 0 and a whole ring of rays meets.
+//!
+//! What blocks is the mirror itself, from both sides: a leg that meets the cap a second time carries no light. Receiver,
+//! light and camera block nothing; the receiver takes light from above only.
+//!
+//! **Accuracy**: `Root::conditioning` times a few units of rounding. It grows like the inverse of the distance to the fold
+//! J_t = 0 and to the axis.
+
+mod circle;
+mod eye;
+mod fold;
+
+pub use eye::Seen;
+
+use crate::kinds::{Estimate, rounding_error};
+use crate::scalar::Scalar;
+use crate::vector::{Vec3, vec3};
+use circle::Alhazen;
+
+/// The reflecting side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Reflects inside.
+    Concave,
+    /// Reflects outside.
+    Convex,
+}
+
+/// What lights the mirror.
+#[derive(Clone, Copy, Debug)]
+pub enum Light<S> {
+    /// An isotropic point light.
+    Point {
+        /// Position [m].
+        position: Vec3<S>,
+        /// Radiant intensity I [W/sr].
+        intensity: S,
+    },
+    /// Parallel light.
+    Beam {
+        /// Unit direction of propagation.
+        direction: Vec3<S>,
+        /// Irradiance on a plane perpendicular to it, E0 [W/m²].
+        irradiance: S,
+    },
+}
+
+/// A spherical mirror with its light and receiver.
+#[derive(Clone, Copy, Debug)]
+pub struct SphereMirror<S> {
+    /// Centre c [m].
+    pub centre: Vec3<S>,
+    /// Radius a [m].
+    pub radius: S,
+    /// The reflecting side.
+    pub side: Side,
+    /// Unit vector from the centre to the middle of the cap.
+    pub cap_axis: Vec3<S>,
+    /// Cosine of the cap's half-angle, -1 for the whole sphere.
+    pub cap_cos_min: S,
+    /// Specular reflectance R.
+    pub reflectance: S,
+    /// The light.
+    pub light: Light<S>,
+    /// Height of the receiver [m].
+    pub receiver_z: S,
+}
+
+/// A mirror point that reflects the light to a receiver point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root<S> {
+    /// The mirror point [m].
+    pub specular_point: Vec3<S>,
+    /// J_t in the plane of incidence [m], without unit for parallel light; zero on the fold.
+    pub tangential: S,
+    /// J_s across it, likewise; zero on the axis through centre and light.
+    pub sagittal: S,
+    /// Irradiance of the receiver [W/m²].
+    pub irradiance: S,
+    /// Upper bound of the relative change of the irradiance per relative change of the coordinates.
+    pub conditioning: S,
+    /// By how much all conditions of light and visibility are met, in units of the radius; negative: dark.
+    pub margin: S,
+    /// What rounding can change in `margin`.
+    pub uncertainty: S,
+    /// Rounding cannot tell this root from none: the point is on a fold, and the irradiance has no bound.
+    pub touching: bool,
+}
+
+/// Lengths in units of the radius, relative to the centre.
+#[derive(Clone, Copy)]
+struct Setting<S> {
+    /// The light, or the unit vector towards a light at infinity.
+    source: Vec3<S>,
+    far: bool,
+    /// The receiver point.
+    receiver: Vec3<S>,
+}
+
+impl<S: Scalar> SphereMirror<S> {
+    fn scaled(&self, point: Vec3<S>) -> Vec3<S> {
+        (point - self.centre) * (S::ONE / self.radius)
+    }
+
+    fn setting(&self, x: Vec3<S>) -> Setting<S> {
+        let (source, far) = match self.light {
+            Light::Point { position, .. } => (self.scaled(position), false),
+            Light::Beam { direction, .. } => (-direction, true),
+        };
+        Setting {
+            source,
+            far,
+            receiver: self.scaled(x),
+        }
+    }
+
+    /// σ: 1 for a concave mirror, -1 for a convex one.
+    fn sign(&self) -> S {
+        match self.side {
+            Side::Concave => S::ONE,
+            Side::Convex => -S::ONE,
+        }
+    }
+
+    /// Size of the coordinates that all lengths are differences of [m].
+    pub fn scale(&self, x: Vec3<S>) -> S {
+        let light = match self.light {
+            Light::Point { position, .. } => position.length(),
+            Light::Beam { .. } => S::ZERO,
+        };
+        self.centre.length() + self.radius + x.length() + light
+    }
+
+    /// By how much a direction from the centre is on the cap, negative off it.
+    fn on_cap(&self, normal: Vec3<S>) -> S {
+        if self.cap_cos_min <= -S::ONE {
+            S::ONE / S::ZERO
+        } else {
+            normal.dot(self.cap_axis) - self.cap_cos_min
+        }
+    }
+
+    /// By how much a segment from `start`, in units of the radius, along a unit vector over `length` passes the cap,
+    /// negative if it meets it.
+    fn clearance(&self, start: Vec3<S>, direction: Vec3<S>, length: S) -> S {
+        let across = start.cross(direction).length();
+        let ahead = -start.dot(direction);
+        if across >= S::ONE {
+            return across - S::ONE;
+        }
+        let half = ((S::ONE - across) * (S::ONE + across)).sqrt();
+        let past = |t: S| {
+            let off = -self.on_cap(start + direction * t);
+            (-t).max(t - length).max(off)
+        };
+        past(ahead - half).min(past(ahead + half))
+    }
+
+    /// Visits every mirror point of the whole sphere that reflects the light to `x` [m] above it and with both legs on the
+    /// reflecting side; `Root::margin` says whether the cap is there and nothing is in the way.
+    pub fn for_each_root(&self, x: Vec3<S>, mut visit: impl FnMut(Root<S>)) {
+        let setting = self.setting(x);
+        let Setting {
+            source,
+            far,
+            receiver,
+        } = setting;
+        let (from_source, from_receiver) = (source.length(), receiver.length());
+        let (base, reach) = if from_source > S::ZERO {
+            (source, from_source)
+        } else {
+            (receiver, from_receiver)
+        };
+        if !(reach > S::ZERO) {
+            return;
+        }
+        let e1 = base * (S::ONE / reach);
+        let side = e1.cross(receiver);
+        let across = side.length();
+        let e2 = if across > S::EPSILON * S::from_f64(4.0) * from_receiver {
+            side.cross(e1).normalized()
+        } else {
+            self.any_plane(e1)
+        };
+        let b = (receiver.dot(e1), across);
+        let s = (from_source, S::ZERO);
+        Alhazen::new(s, b, far).for_each_root(|(cosine, sine), touching| {
+            let normal = e1 * cosine + e2 * sine;
+            if let Some(root) = self.root(x, &setting, (cosine, sine), (s, b), normal, touching) {
+                visit(root);
+            }
+        });
+    }
+
+    /// A unit vector perpendicular to `e1`, towards the middle of the cap as far as possible: where a whole ring of mirror
+    /// points reflects to one receiver point, this plane holds the points of the ring nearest to that middle.
+    fn any_plane(&self, e1: Vec3<S>) -> Vec3<S> {
+        let off = |axis: Vec3<S>| axis - e1 * axis.dot(e1);
+        let mut best = off(self.cap_axis);
+        if !(best.length() > S::from_f64(1e-6)) {
+            let x_is_closer = e1.x.abs() > e1.y.abs();
+            best = off(if x_is_closer {
+                vec3(S::ZERO, S::ONE, S::ZERO)
+            } else {
+                vec3(S::ONE, S::ZERO, S::ZERO)
+            });
+        }
+        // A short difference is not yet perpendicular to rounding.
+        off(best.normalized()).normalized()
+    }
+
+    /// The root at a mirror point that solves the plane problem; `None` if a leg is on the other side.
+    fn root(
+        &self,
+        x: Vec3<S>,
+        setting: &Setting<S>,
+        (cosine, sine): (S, S),
+        (s, b): ((S, S), (S, S)),
+        normal: Vec3<S>,
+        touching: bool,
+    ) -> Option<Root<S>> {
+        let sigma = self.sign();
+        let noise = S::EPSILON * S::from_f64(16.0);
+        let to_receiver = (b.0 - cosine, b.1 - sine);
+        let r2 = to_receiver.0.hypot(to_receiver.1);
+        let toward = |v: (S, S)| -sigma * (v.0 * cosine + v.1 * sine);
+        // A source at infinity: all lengths of the first leg are divided out.
+        let (r1, first, sum, product) = if setting.far {
+            (S::ONE / S::ZERO, toward(s), S::ONE, r2)
+        } else {
+            let to_source = (s.0 - cosine, s.1 - sine);
+            let r1 = to_source.0.hypot(to_source.1);
+            (r1, toward(to_source) / r1, r1 + r2, r1 * r2)
+        };
+        let second = toward(to_receiver) / r2;
+        if !(first > S::ZERO && second > S::ZERO && r1 > noise && r2 > noise) {
+            return None;
+        }
+        let cos_i = S::HALF * (first + second);
+        let sin_i = (to_receiver.1 * cosine - to_receiver.0 * sine).abs() / r2;
+        let tangential = sum - S::TWO * sigma * product / cos_i;
+        let cross = (s.0 * b.1 - s.1 * b.0).abs() / sin_i;
+        let plain = sum - S::TWO * sigma * product * cos_i;
+        let sagittal = if sin_i > S::from_f64(0.125) {
+            if plain < S::ZERO { -cross } else { cross }
+        } else {
+            plain
+        };
+        let height = normal.z - (self.receiver_z - self.centre.z) / self.radius;
+        if !(height > S::ZERO) {
+            return None;
+        }
+        let (strength, unit) = match self.light {
+            Light::Point { intensity, .. } => (intensity / self.radius.squared(), self.radius),
+            Light::Beam { irradiance, .. } => (irradiance, S::ONE),
+        };
+        let irradiance =
+            strength * self.reflectance * height / (r2 * (tangential * sagittal).abs());
+        let lengths = Lengths {
+            r1,
+            r2,
+            sum,
+            product,
+            cos_i,
+            sin_i,
+            tangential,
+            sagittal,
+            height,
+        };
+        let size = self.scale(x) / self.radius;
+        let moved = lengths.moved() + lengths.reach() / sagittal.abs();
+        Some(Root {
+            specular_point: self.centre + normal * self.radius,
+            tangential: tangential * unit,
+            sagittal: sagittal * unit,
+            irradiance,
+            conditioning: S::ONE + size * lengths.conditioning(sigma),
+            margin: self.margin(setting, normal, height),
+            uncertainty: noise * size * (S::ONE + moved),
+            touching,
+        })
+    }
+
+    /// The smallest of all amounts by which a mirror point is on the cap, above the receiver, and in free view of the light
+    /// and of the receiver point, in units of the radius.
+    fn margin(&self, setting: &Setting<S>, normal: Vec3<S>, height: S) -> S {
+        let mut margin = self.on_cap(normal).min(height);
+        if self.side == Side::Concave {
+            // The legs leave the mirror inwards: start at the far end of the chord, where they can meet the cap again.
+            let to_source = if setting.far {
+                (setting.source, S::ONE / S::ZERO)
+            } else {
+                let leg = setting.source - normal;
+                (leg.normalized(), leg.length())
+            };
+            let leg = setting.receiver - normal;
+            for (direction, length) in [to_source, (leg.normalized(), leg.length())] {
+                let chord = -S::TWO * normal.dot(direction);
+                let off = -self.on_cap(normal + direction * chord);
+                margin = margin.min((chord - length).max(off));
+            }
+        }
+        margin
+    }
+
+    /// Irradiance at the receiver point `x` by one reflection (LSDE) [W/m²].
+    pub fn caustic(&self, x: Vec3<S>) -> Estimate<S> {
+        let mut sum = Estimate::NONE;
+        self.for_each_root(x, |root| {
+            let marginal = root.margin.abs() <= root.uncertainty;
+            let lit = root.margin >= S::ZERO;
+            if lit {
+                sum.add(root.irradiance, root.conditioning);
+            }
+            if root.touching && (lit || marginal) {
+                sum.error = S::ONE / S::ZERO;
+            } else if marginal {
+                // A shadow edge within rounding: the root may be there or not.
+                sum.error += root.irradiance;
+            }
+        });
+        sum
+    }
+
+    /// Visits the roots that light `x`.
+    pub fn for_each_lit_root(&self, x: Vec3<S>, mut visit: impl FnMut(Root<S>)) {
+        self.for_each_root(x, |root| {
+            if root.margin >= S::ZERO {
+                visit(root);
+            }
+        });
+    }
+
+    /// Direct irradiance at the receiver point `x`, in the shadow of the mirror or not [W/m²].
+    pub fn direct(&self, x: Vec3<S>) -> Estimate<S> {
+        let setting = self.setting(x);
+        let (free, direction, length) = match self.light {
+            Light::Point {
+                position,
+                intensity,
+            } => {
+                let leg = setting.source - setting.receiver;
+                let e = crate::kinds::diffuse::direct(position, intensity, x);
+                (e, leg.normalized(), leg.length())
+            }
+            Light::Beam {
+                direction,
+                irradiance,
+            } => {
+                let mut sum = Estimate::NONE;
+                if direction.z < S::ZERO {
+                    sum.add(-direction.z * irradiance, S::ONE / -direction.z);
+                }
+                (sum, -direction, S::ONE / S::ZERO)
+            }
+        };
+        let clearance = self.clearance(setting.receiver, direction, length);
+        let noise = rounding_error(self.scale(x) / self.radius, S::ZERO);
+        let mut sum = if clearance >= -noise {
+            free
+        } else {
+            Estimate::NONE
+        };
+        if clearance.abs() <= noise {
+            sum.error += free.value;
+        }
+        sum
+    }
+}
+
+/// The lengths and angles of a root, in units of the radius.
+struct Lengths<S> {
+    r1: S,
+    r2: S,
+    /// r1 + r2; 1 for parallel light.
+    sum: S,
+    /// r1 r2; r2 for parallel light.
+    product: S,
+    cos_i: S,
+    sin_i: S,
+    tangential: S,
+    sagittal: S,
+    /// Height of the mirror point above the receiver.
+    height: S,
+}
+
+impl<S: Scalar> Lengths<S> {
+    fn far(&self) -> bool {
+        !self.r1.is_finite()
+    }
+
+    /// |∂g| per displacement of source and receiver.
+    fn reach(&self) -> S {
+        if self.far() {
+            S::ONE + self.r2
+        } else {
+            self.sum
+        }
+    }
+
+    /// By how much φ moves per displacement of source and receiver: ∂g over |g'| = cos i |J_t|.
+    fn moved(&self) -> S {
+        self.reach() / (self.cos_i * self.tangential.abs())
+    }
+
+    /// Relative change of E per displacement of source and receiver.
+    ///
+    /// Along the circle r1 and r2 change by ± sin i, their sum not at all (Fermat), and cos i by sin i |cos i/r - σ|;
+    /// moving an end of a leg turns it by 1/r. Moving the mirror point across the plane of incidence changes cos θ_x alone.
+    fn conditioning(&self, sigma: S) -> S {
+        let (c, s, two) = (self.cos_i, self.sin_i, S::TWO);
+        let turn = |r: S| (c / r - sigma).abs();
+        let (turns, difference) = if self.far() {
+            (S::ONE + turn(self.r2), S::ONE)
+        } else {
+            (turn(self.r1) + turn(self.r2), (self.r1 - self.r2).abs())
+        };
+        let (reach, moved) = (self.reach(), self.moved());
+        let tangential = two
+            + two * reach / c * (S::ONE + s / c)
+            + moved * s * two * (difference + self.product * turns / c) / c;
+        let sagittal =
+            two + two * two * reach + moved * s * two * (difference * c + self.product * turns);
+        let shift = S::ONE + moved + reach / self.sagittal.abs();
+        let cosine = shift / self.height.abs() + shift / self.r2;
+        tangential / self.tangential.abs() + sagittal / self.sagittal.abs() + cosine
+    }
+}
