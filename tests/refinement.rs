@@ -35,7 +35,10 @@ fn a_coarse_pixel_is_the_mean_of_the_fine_pixels_in_it() {
                 }
             }
             println!("{name} {class}: worst {worst:e} of {largest}");
-            assert!(worst <= 1e-7 * largest, "{name} {class}: {worst:e} of {largest}");
+            assert!(
+                worst <= 1e-7 * largest,
+                "{name} {class}: {worst:e} of {largest}"
+            );
         }
     }
 }
