@@ -18,10 +18,10 @@ use crate::judge::verdict::{Finding, State, decide};
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
 const MERGING_ITERATIONS: u32 = 8;
-/// Paths of an iteration that merges.
-const MERGING_PATHS: u64 = 1 << 15;
-/// Paths of a replicate of any other method: clearing and summing the film costs a few percent of drawing them.
-const PATHS: u64 = 1 << 18;
+/// Paths of a replicate for each pixel: clearing and summing the film costs a few percent of drawing them.
+const PATHS_PER_PIXEL: u64 = 16;
+/// Fewest paths of a replicate.
+const FEWEST_PATHS: u64 = 1 << 16;
 
 /// What to verify.
 pub struct Request {
@@ -102,7 +102,8 @@ fn run_pair(
     let subject = &request.scenes[pair.scene];
     let integrator = request.integrators[pair.integrator].as_ref();
     let entry = &subject.entry;
-    let shape = first_shape(integrator, pair, request.bandwidth);
+    let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
+    let shape = first_shape(integrator, pair, request.bandwidth, pixels);
     let kernel = request.kernel.and_then(|k| k.to_string().parse().ok());
     let expected = truths.of(pair.scene, entry, &pair.plan, kernel, &shape.bandwidths)?;
     let canvas = Canvas {
@@ -163,21 +164,18 @@ fn is_regularized(treatment: Treatment) -> bool {
 }
 
 /// The replicates that pilots start with.
-fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64) -> Shape {
+fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels: u64) -> Shape {
     let schedule = integrator.schedule(bandwidth);
     let merges = |t: Treatment| t == Treatment::Regularized(Technique::Merge);
-    if pair.plan.iter().any(|c| merges(c.treatment)) {
-        Shape {
-            bandwidths: (0..MERGING_ITERATIONS)
-                .map(|i| schedule.bandwidth(i))
-                .collect(),
-            paths_per_iteration: MERGING_PATHS,
-        }
+    let iterations = if pair.plan.iter().any(|c| merges(c.treatment)) {
+        MERGING_ITERATIONS
     } else {
-        Shape {
-            bandwidths: vec![schedule.bandwidth(0)],
-            paths_per_iteration: PATHS,
-        }
+        1
+    };
+    let paths = (PATHS_PER_PIXEL * pixels).max(FEWEST_PATHS);
+    Shape {
+        bandwidths: (0..iterations).map(|i| schedule.bandwidth(i)).collect(),
+        paths_per_iteration: paths / u64::from(iterations),
     }
 }
 

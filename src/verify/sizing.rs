@@ -13,10 +13,13 @@ use crate::judge::power::replicates_needed;
 const PILOT_REPLICATES: u32 = 48;
 /// The pilot's variance is multiplied by this before it is used: it may have been lucky.
 const VARIANCE_ALLOWANCE: f64 = 1.3;
-/// A replicate is made large enough for this many contributions, so that none falls below [`FEWEST_CONTRIBUTIONS`].
+/// A replicate is made large enough for this many contributions on average, so that none of the final test falls below
+/// [`FEWEST_CONTRIBUTIONS`].
 const CONTRIBUTIONS_WANTED: u64 = 2 * FEWEST_CONTRIBUTIONS;
-/// Paths after which a class that is claimed and has not been seen is given up as missing: at least this many are
-/// drawn in the final test before it says so.
+/// The fewest contributions in any replicate of the pilot that are taken as a sign of this.
+const CONTRIBUTIONS_SAFE: u64 = FEWEST_CONTRIBUTIONS * 5 / 4;
+/// A class that is claimed and was not seen in the pilot gets at least this many paths in the final test before it is
+/// called missing: one contribution in a million paths would be seen with probability 1 - 2e-9.
 pub const PATHS_BEFORE_MISSING: u64 = 20_000_000;
 /// The most replicates, so that what is kept of them stays small.
 const MOST_REPLICATES: u64 = 1 << 20;
@@ -94,20 +97,17 @@ fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) 
     let seen = samples().filter(|s| s.contributions > 0 && s.invalid.pixels() == 0);
     let replicates = u64::from(PILOT_REPLICATES);
     let wanted = |s: Sample| {
-        let mean = s.contributions / replicates;
-        if s.fewest_contributions >= CONTRIBUTIONS_WANTED {
-            1
-        } else {
-            (2 * CONTRIBUTIONS_WANTED)
-                .div_ceil(mean.max(1))
-                .next_power_of_two()
+        if s.fewest_contributions >= CONTRIBUTIONS_SAFE {
+            return 1;
         }
+        let mean = (s.contributions / replicates).max(1);
+        CONTRIBUTIONS_WANTED
+            .div_ceil(mean)
+            .max(2)
+            .next_power_of_two()
     };
     let for_seen = seen.map(wanted).max().unwrap_or(1);
     let most_for_seen =
         (demand.most_paths / (FEWEST_REPLICATES as u64 * shape.paths())).next_power_of_two();
-    let unseen = samples().any(|s| s.contributions == 0);
-    let enough = shape.paths() * replicates >= PATHS_BEFORE_MISSING;
-    let for_unseen = if unseen && !enough { 8 } else { 1 };
-    for_seen.min(most_for_seen).min(1024).max(for_unseen)
+    for_seen.min(most_for_seen).min(1024)
 }
