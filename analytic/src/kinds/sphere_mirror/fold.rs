@@ -4,7 +4,8 @@
 //! centre and light, which the receiver cuts in folds; and the axis itself, J_s = 0, where the mirror points at
 //! cos φ = (s + b)/(2 s b) reflect to the axis at b (cos φ = 1/(2b) for parallel light). A convex mirror has neither.
 //!
-//! The folds are searched with [`MERIDIANS`] × [`RAYS`] rays, the nearest one is refined along the curve. A lit part of a
+//! The folds are searched with [`HALF_PLANES`] × [`RAYS`] rays, and every local minimum of the distance is
+//! refined along the curve. A lit part of a
 //! fold that is narrower than the spacing of the rays is missed.
 
 use super::{Setting, Side, SphereMirror};
@@ -12,8 +13,8 @@ use crate::kinds::singularity::{Singularity, SingularityKind};
 use crate::roots::bracketed;
 use crate::vector::{Vec3, vec3};
 
-/// Planes through the axis with which the folds are searched.
-const MERIDIANS: u32 = 48;
+/// Half planes through the axis with which the folds are searched.
+const HALF_PLANES: u32 = 128;
 /// Rays in each of them.
 const RAYS: u32 = 192;
 /// Mirror points of a ring that are tried.
@@ -156,78 +157,126 @@ impl SphereMirror<f64> {
             .map(|focus| focus.z - self.plane())
     }
 
-    /// The nearest lit fold in one half plane after the other, of those between `low` and `high` in ψ.
+    /// The nearest lit fold in the half plane ω, of those between `low` and `high` in ψ.
     fn fold_in(&self, m: &Meridians, omega: f64, low: f64, high: f64, rays: u32) -> Option<Fold> {
         let at = |k: u32| low + (high - low) * f64::from(k) / f64::from(rays);
+        let sample = |psi: f64| self.above(m, psi, omega).map(|h| (psi, h));
         let mut nearest: Option<Fold> = None;
-        let mut last: Option<(f64, f64)> = None;
-        for k in 0..=rays {
-            let psi = at(k);
-            let here = self.above(m, psi, omega).map(|h| (psi, h));
-            if let (Some((before, h0)), Some((_, h1))) = (last, here)
-                && (h0 < 0.0) != (h1 < 0.0)
-            {
-                // No derivative: the bracket is halved.
-                let f = |w: f64| (self.above(m, w, omega).unwrap_or(0.0), 0.0);
-                let root = bracketed(f, before, psi);
-                let normal = m.normal(root, omega);
-                if let Some(focus) = self.tangential_focus(&m.setting, normal) {
-                    let target = vec3(focus.x, focus.y, self.plane());
-                    let distance = (m.setting.receiver - target).length();
-                    if self.lights(&m.setting, normal, target)
-                        && nearest.is_none_or(|n| distance < n.distance)
-                    {
-                        nearest = Some(Fold {
-                            psi: root,
-                            distance,
-                        });
-                    }
+        let mut crossing = |before: f64, after: f64| {
+            // No derivative: the bracket is halved.
+            let f = |psi: f64| (self.above(m, psi, omega).unwrap_or(0.0), 0.0);
+            let psi = bracketed(f, before, after);
+            let normal = m.normal(psi, omega);
+            if let Some(focus) = self.tangential_focus(&m.setting, normal) {
+                let target = vec3(focus.x, focus.y, self.plane());
+                let distance = (m.setting.receiver - target).length();
+                if self.lights(&m.setting, normal, target)
+                    && nearest.is_none_or(|n| distance < n.distance)
+                {
+                    nearest = Some(Fold { psi, distance });
                 }
             }
-            last = here;
+        };
+        let (mut first, mut second) = (None, None);
+        for k in 0..=rays {
+            let third = sample(at(k));
+            if let (Some((p1, h1)), Some((p2, h2))) = (second, third)
+                && (h1 < 0.0) != (h2 < 0.0)
+            {
+                crossing(p1, p2);
+            }
+            if let (Some((p0, h0)), Some((_, h1)), Some((p2, h2))) = (first, second, third)
+                && (h0 < 0.0) == (h1 < 0.0)
+                && (h1 < 0.0) == (h2 < 0.0)
+                && f64::abs(h1) <= f64::min(f64::abs(h0), f64::abs(h2))
+                && let Some(across) = self.other_side(m, omega, (p0, p2), h1 < 0.0)
+            {
+                // Two crossings between samples: the receiver nearly touches the sheet.
+                crossing(p0, across);
+                crossing(across, p2);
+            }
+            (first, second) = (second, third);
         }
         nearest
     }
 
+    /// A ray between two whose tangential focus is on the other side of the receiver, if a search for the extremum finds one.
+    fn other_side(
+        &self,
+        m: &Meridians,
+        omega: f64,
+        (mut low, mut high): (f64, f64),
+        below: bool,
+    ) -> Option<f64> {
+        let toward = |psi: f64| {
+            let h = self.above(m, psi, omega).unwrap_or(f64::INFINITY);
+            if below { -h } else { h }
+        };
+        for _ in 0..40 {
+            let third = (high - low) / 3.0;
+            let (c, d) = (low + third, high - third);
+            let (at_c, at_d) = (toward(c), toward(d));
+            if f64::min(at_c, at_d) < 0.0 {
+                return Some(if at_c < at_d { c } else { d });
+            }
+            if at_c < at_d {
+                high = d;
+            } else {
+                low = c;
+            }
+        }
+        None
+    }
+
     fn nearest_fold(&self, m: &Meridians) -> Option<Singularity<f64>> {
         use core::f64::consts::PI;
-        let step = PI / f64::from(MERIDIANS);
-        // ψ of both signs and half a turn in ω: each half plane once. The grid is off the paraxial ray ψ = 0.
-        let (low, high) = (-PI + 1e-3, PI + 1e-3);
-        let found = (0..MERIDIANS)
-            .filter_map(|k| {
+        let step = 2.0 * PI / f64::from(HALF_PLANES);
+        let at = |k: u32| self.fold_in(m, step * f64::from(k), 0.0, PI, RAYS);
+        let mut nearest = f64::INFINITY;
+        let far = |fold: Option<Fold>| fold.map_or(f64::INFINITY, |f| f.distance);
+        let (mut before, mut here) = (at(HALF_PLANES - 1), at(0));
+        for k in 0..HALF_PLANES {
+            let after = at(k + 1);
+            // Every local minimum, and with it every end of a lit part, is refined.
+            if let Some(fold) = here
+                && fold.distance <= far(before)
+                && fold.distance <= far(after)
+            {
                 let omega = step * f64::from(k);
-                self.fold_in(m, omega, low, high, RAYS)
-                    .map(|fold| (omega, fold))
-            })
-            .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance))?;
-        // Golden section along the curve; outside the lit part the distance counts as infinite.
-        let width = 2.0 * PI / f64::from(RAYS);
-        let (mut a, mut b) = (found.0 - step, found.0 + step);
-        let mut psi = found.1.psi;
-        let mut best = found.1.distance;
+                nearest = nearest.min(self.refined(m, (omega, fold), step));
+            }
+            (before, here) = (here, after);
+        }
+        nearest.is_finite().then(|| Singularity {
+            kind: SingularityKind::Fold,
+            distance: nearest * self.radius,
+        })
+    }
+
+    /// The smallest distance along a fold within `step` in ω of a point of it: golden section, where a dark part counts as
+    /// infinitely far.
+    fn refined(&self, m: &Meridians, (mut omega, mut fold): (f64, Fold), step: f64) -> f64 {
+        let width = 2.0 * core::f64::consts::PI / f64::from(RAYS);
         let ratio = 0.5 * (libm::sqrt(5.0) - 1.0);
+        let (mut a, mut b) = (omega - step, omega + step);
         for _ in 0..48 {
             let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
-            let mut at = |omega: f64| {
-                let fold = self.fold_in(m, omega, psi - width, psi + width, 4);
-                fold.map_or(f64::INFINITY, |fold| {
-                    if fold.distance < best {
-                        (best, psi) = (fold.distance, fold.psi);
+            let [at_c, at_d] = [c, d].map(|w| {
+                let there = self.fold_in(m, w, fold.psi - width, fold.psi + width, 4);
+                there.map_or(f64::INFINITY, |there| {
+                    if there.distance < fold.distance {
+                        (omega, fold) = (w, there);
                     }
-                    fold.distance
+                    there.distance
                 })
-            };
-            let (at_c, at_d) = (at(c), at(d));
-            if at_c < at_d {
+            });
+            // Both in the dark: towards what is known to be lit.
+            if at_c < at_d || (at_c == at_d && omega < d) {
                 b = d;
             } else {
                 a = c;
             }
         }
-        Some(Singularity {
-            kind: SingularityKind::Fold,
-            distance: best * self.radius,
-        })
+        fold.distance
     }
 }

@@ -199,8 +199,8 @@ impl<S: Scalar> SphereMirror<S> {
         let s = (from_source, S::ZERO);
         Alhazen::new(s, b, far).for_each_root(|(cosine, sine), touching| {
             let normal = e1 * cosine + e2 * sine;
-            if let Some(root) = self.root(x, &setting, (cosine, sine), (s, b), normal, touching) {
-                visit(root);
+            if let Some(root) = self.root(x, &setting, (cosine, sine), (s, b), (e1, normal)) {
+                visit(Root { touching, ..root });
             }
         });
     }
@@ -229,8 +229,7 @@ impl<S: Scalar> SphereMirror<S> {
         setting: &Setting<S>,
         (cosine, sine): (S, S),
         (s, b): ((S, S), (S, S)),
-        normal: Vec3<S>,
-        touching: bool,
+        (e1, normal): (Vec3<S>, Vec3<S>),
     ) -> Option<Root<S>> {
         let sigma = self.sign();
         let noise = S::EPSILON * S::from_f64(16.0);
@@ -281,7 +280,12 @@ impl<S: Scalar> SphereMirror<S> {
             height,
         };
         let size = self.scale(x) / self.radius;
-        let moved = lengths.moved() + lengths.reach() / sagittal.abs();
+        // Rounding moves the mirror point in the plane, at a fold by its square root, and turns it about the axis through
+        // centre and light, next to that axis all around. Of the latter the cap notices only what is off that axis.
+        let unit_noise = noise * size;
+        let along = (unit_noise * lengths.moved()).min(noise.sqrt() * S::TWO);
+        let around = (unit_noise * lengths.reach() / sagittal.abs()).min(S::TWO);
+        let tilt = self.cap_axis.cross(e1).length() + e1.x.hypot(e1.y);
         Some(Root {
             specular_point: self.centre + normal * self.radius,
             tangential: tangential * unit,
@@ -289,8 +293,8 @@ impl<S: Scalar> SphereMirror<S> {
             irradiance,
             conditioning: S::ONE + size * lengths.conditioning(sigma),
             margin: self.margin(setting, normal, height),
-            uncertainty: noise * size * (S::ONE + moved),
-            touching,
+            uncertainty: unit_noise + (along + around * tilt) * S::from_f64(3.0),
+            touching: false,
         })
     }
 
