@@ -6,6 +6,7 @@
 pub mod camera;
 pub mod class;
 mod double_double;
+pub mod gradient;
 pub mod kinds;
 pub mod optics;
 pub mod pixel;
