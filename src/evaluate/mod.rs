@@ -11,11 +11,13 @@ mod conic_mirrors;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod glass_sphere;
 mod paraboloid;
 mod planar_mirror;
 pub mod reading;
 pub mod report;
 mod stigmatic_refractors;
+mod water_waves;
 
 use nephroid_analytic::kinds::{Estimate, rounding_error};
 use serde_json::Value;
@@ -55,9 +57,11 @@ fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
         "paraboloid" => paraboloid::configuration,
         "conic-mirrors" => conic_mirrors::configuration,
         "stigmatic-refractors" => stigmatic_refractors::configuration,
+        "glass-sphere" => glass_sphere::configuration,
+        "water-waves" => water_waves::configuration,
         other => {
             let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface, paraboloid, conic-mirrors, \
-                           stigmatic-refractors";
+                           stigmatic-refractors, glass-sphere, water-waves";
             return Err(top.error("scene", &format!("`{other}`"), allowed));
         }
     };

@@ -88,6 +88,8 @@ struct Ray<S> {
     transmittance: S,
     /// Intensity towards the focus [W/sr].
     intensity: S,
+    /// What one rounding of κ does to nκ - 1, relatively.
+    rounding: S,
 }
 
 /// T for a ray whose directions in air and glass have the cosine κ.
@@ -108,6 +110,7 @@ fn ellipsoid<S: Scalar>(n: S, a: S, e0: S, cosine: S) -> Ray<S> {
         entering,
         transmittance: t,
         intensity: e0 * t * r2.squared() * entering / leaving,
+        rounding: n * cosine / entering,
     }
 }
 
@@ -127,6 +130,7 @@ fn oval<S: Scalar>(n: S, d: S, c: S, intensity: S, cosine: S, sine: S) -> Ray<S>
         entering,
         transmittance: t,
         intensity: intensity * t * (r2 / r1).squared() * entering / leaving,
+        rounding: n * (d * cosine + r2) / (r1 * entering),
     }
 }
 
@@ -218,7 +222,8 @@ impl<S: Scalar> StigmaticRefractor<S> {
             specular_point: vec3(k * x, k * y, ray.r2 * g / distance),
             transmittance: ray.transmittance,
             irradiance: self.front.irradiance(n, self.defocus, x, y),
-            conditioning: self.front.conditioning(n, self.defocus, x, y),
+            // Towards grazing incidence E falls with the square of nκ - 1.
+            conditioning: self.front.conditioning(n, self.defocus, x, y) + S::TWO * ray.rounding,
             leg: ray.r2 - side * distance,
         })
     }

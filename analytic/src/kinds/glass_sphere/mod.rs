@@ -203,6 +203,9 @@ impl<S: Scalar> GlassSphere<S> {
                     Isolated::Simple(i) => (i, false),
                     Isolated::Touching(i) => (i, true),
                 };
+                // On the axis the central ray is a root exactly, which a bracket reaches to within rounding.
+                let central = rho == S::ZERO && i.abs() <= S::EPSILON;
+                let i = if central { S::ZERO } else { i };
                 let ray = self.ray(i, interactions);
                 if ray.cos_d * self.receiver_z > S::ZERO {
                     visit(self.root(rho, interactions, i, touching));

@@ -29,7 +29,7 @@ pub struct Seen<S> {
 }
 
 /// The most radians of phase that a camera ray may pass over between the highest crest and the lowest trough.
-pub const MAX_PHASE: f64 = 1e6;
+pub const MAX_PHASE: f64 = 1e5;
 
 impl<S: Scalar> WaterWaves<S> {
     /// Whether a camera ray is so steep that its first hit is searched for.

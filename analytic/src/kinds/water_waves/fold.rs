@@ -27,7 +27,7 @@ pub struct Fold<S> {
 /// The search for the nearest fold goes this many of the longest wavelengths far.
 const WAVELENGTHS: f64 = 64.0;
 /// And no further than this many radians of the shortest.
-const PHASE: f64 = 4e5;
+const PHASE: f64 = 4e4;
 
 impl<S: Scalar> WaterWaves<S> {
     /// Visits the folds with entry points u from `low` to `high`, in ascending u. No allocation.

@@ -129,7 +129,7 @@ fn landing<S: Scalar>(r: &Refraction<S>, depth: S, zeta: S, slope: S, second: S)
 }
 
 /// The most radians of phase from which light may reach one floor point.
-const MAX_PHASE: f64 = 2e5;
+const MAX_PHASE: f64 = 2e4;
 
 impl<S: Scalar> WaterWaves<S> {
     /// Waves over a floor.
@@ -169,6 +169,11 @@ impl<S: Scalar> WaterWaves<S> {
     /// Height of the highest crest that the amplitudes allow [m].
     pub fn highest(&self) -> S {
         self.depth + self.sums.height
+    }
+
+    /// The largest |k| of a wave with an amplitude [1/m].
+    pub fn largest_wave_number(&self) -> S {
+        self.sums.largest_wave_number
     }
 
     /// ζ and its derivatives at u.
@@ -269,13 +274,12 @@ impl<S: Scalar> WaterWaves<S> {
         let changes = self.sums.changes(u.abs());
         let n = G::input(self.index, 0, self.index);
         let depth = G::input(self.depth, 1, self.depth);
-        // A flat surface needs no input of its own: all its changes are zero.
-        let input = |value: S, index: usize, change: S| G::input(value, index, change);
-        let zeta = input(at.zeta, 2, changes[0]);
-        let slope = input(at.slope, 3, changes[1]);
-        let second = input(at.second, 4, changes[2]);
+        let zeta = G::input(at.zeta, 2, changes[0]);
+        let slope = G::input(at.slope, 3, changes[1]);
+        let second = G::input(at.second, 4, changes[2]);
         let (shift, _) = landing(&refraction(n, slope), depth, zeta, slope, second);
-        let offset = shift - input(x, 5, x.abs() + u.abs());
+        // A place counts as known to a part of the reach at least, so that views can displace it.
+        let offset = shift - G::input(x, 5, (x.abs() + u.abs()).max(self.reach()));
         // The entry point moves, and the surface under it.
         let mut moving = G::constant(u);
         for (m, v) in moving.slopes.iter_mut().zip(offset.slopes) {
