@@ -3,15 +3,20 @@
 //! Every kind offers, per path class, the irradiance with an error bound, the specular roots behind it and the distance
 //! to the nearest singularity. Formulas are generic over [`Scalar`]; nothing here allocates unless it says so.
 
+pub mod conic_mirrors;
 pub mod cylinder_cup;
 pub mod diffuse;
 pub mod entry;
 pub mod flat_interface;
 pub mod glass_slab;
+pub mod glass_sphere;
+pub mod paraboloid;
 pub mod planar_chains;
 pub mod planar_mirror;
 pub mod singularity;
 pub mod sphere_mirror;
+pub mod stigmatic_refractors;
+pub mod water_waves;
 
 use crate::scalar::Scalar;
 
