@@ -51,7 +51,8 @@ fn radiance(u: f64, v: f64) -> [f64; 4] {
     let light = [0.25, 0.0, 2.0];
     let image = [0.25, 2.0, 2.0];
     let direct = |x: [f64; 2], y: [f64; 3]| {
-        let r2 = (x[0] - y[0]).powi(2) + (x[1] - y[1]).powi(2) + y[2] * y[2];
+        let (dx, dy) = (x[0] - y[0], x[1] - y[1]);
+        let r2 = dx * dx + dy * dy + y[2] * y[2];
         0.5 / std::f64::consts::PI * y[2] / (r2 * r2.sqrt())
     };
     // Where the segment from a floor point to y crosses the mirror's plane.
