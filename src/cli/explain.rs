@@ -65,8 +65,8 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     for (integrator, plan) in &plans {
         super::print(&format!("\n{}: {}", integrator.name(), integrator.title()));
         for c in plan {
-            super::print(&format!(
-                "  {:<6} {:<9} {:<12} {:<14} {}",
+            let facts = format!(
+                "  {:<6} {:<9} {:<12} {:<14}",
                 c.class,
                 if is_irregular(c.treatment) {
                     "irregular"
@@ -75,11 +75,32 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                 },
                 treatment(c.treatment),
                 technique(c.treatment).unwrap_or("-"),
-                c.reason
-            ));
+            );
+            super::print(&with_wrapped(&facts, &c.reason));
         }
     }
     Ok(exit::PASS)
+}
+
+/// A sentence in a column of its own, to the right of others, broken between words so that no line is longer than 110.
+fn with_wrapped(left: &str, sentence: &str) -> String {
+    const WIDTH: usize = 110;
+    let indent = left.chars().count() + 1;
+    let (mut text, mut column) = (left.to_owned(), indent - 1);
+    for word in sentence.split_whitespace() {
+        let length = word.chars().count();
+        if column + 1 + length > WIDTH && column > indent {
+            text.push('\n');
+            text.push_str(&" ".repeat(indent));
+            column = indent;
+        } else {
+            text.push(' ');
+            column += 1;
+        }
+        text.push_str(word);
+        column += length;
+    }
+    text
 }
 
 /// Whether the method has no edge to sample or connect without touching a singularity.

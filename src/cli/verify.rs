@@ -40,13 +40,13 @@ pub struct Args {
     #[arg(long, default_value_t = Effort::Quick)]
     effort: Effort,
     /// Equivalence margin relative to the truth, 1e-4 to 0.5. Default: the effort's.
-    #[arg(long, value_name = "M", value_parser = margin)]
+    #[arg(long, value_name = "M", value_parser = margin, allow_negative_numbers = true)]
     margin: Option<f64>,
     /// Probability that all of it together gives any false "different", 1e-15 to 0.1.
-    #[arg(long, value_name = "P", default_value_t = LEVEL, value_parser = level)]
+    #[arg(long, value_name = "P", default_value_t = LEVEL, value_parser = level, allow_negative_numbers = true)]
     level: f64,
     /// Angle [rad] or radius [m] of the mollifiers of regularizing integrators.
-    #[arg(long, value_name = "A", default_value_t = BANDWIDTH, value_parser = bandwidth)]
+    #[arg(long, value_name = "A", default_value_t = BANDWIDTH, value_parser = bandwidth, allow_negative_numbers = true)]
     bandwidth: f64,
     /// Mollifier: cone, epanechnikov or vmf for an angle, disc or epanechnikov for a radius. Default: cone, disc.
     #[arg(long, value_name = "K")]

@@ -17,20 +17,22 @@ pub fn outcome(o: &Outcome) -> Result<String, String> {
     let mut report = Report::new("nephroid verify");
     report.set_time(duration(o.seconds));
     let mut suites: Vec<TestSuite> = Vec::new();
-    let mut scene = None;
+    let (mut scene, mut pair) = (None, None);
     for v in &o.verdicts {
         if scene.replace(v.scene.as_str()) != Some(v.scene.as_str()) {
             suites.push(TestSuite::new(v.scene.as_str()));
         }
+        // One run serves all cases of a pair of scene and integrator: the first one has its time.
+        let first = pair.replace((&v.scene, &v.integrator)) != Some((&v.scene, &v.integrator));
         if let Some(suite) = suites.last_mut() {
-            suite.add_test_case(case(v));
+            suite.add_test_case(case(v, if first { v.seconds } else { 0.0 }));
         }
     }
     report.add_test_suites(suites);
     report.to_string().map_err(|e| e.to_string())
 }
 
-fn case(v: &Verdict) -> TestCase {
+fn case(v: &Verdict, seconds: f64) -> TestCase {
     let f = &v.finding;
     let mut status = match f.state {
         State::Equivalent => TestCaseStatus::success(),
@@ -48,7 +50,7 @@ fn case(v: &Verdict) -> TestCase {
     }
     let mut case = TestCase::new(format!("{}/{}/{}", v.integrator, v.class, v.region), status);
     case.set_classname(v.scene.as_str())
-        .set_time(duration(v.seconds));
+        .set_time(duration(seconds));
     case
 }
 

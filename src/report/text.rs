@@ -148,7 +148,7 @@ pub fn summary(o: &Outcome) -> String {
     format!(
         "{}. Effort {}, α = r = {}, seed {}, {:.1} s.\n\
          Equivalent: within {} of the truth; a suite says so falsely with probability at most {:e}.\n\
-         Different: a suite of correct integrators says so with probability at most {:e} ({} checks share it).",
+         Different: a suite of correct integrators says so with probability at most {:e}, shared by {}.",
         counts.join(", "),
         o.effort,
         o.bandwidth,
@@ -157,7 +157,10 @@ pub fn summary(o: &Outcome) -> String {
         percent(o.margin),
         o.equivalence_level,
         o.level,
-        o.checks,
+        match o.checks {
+            1 => "1 check".to_owned(),
+            n => format!("{n} checks"),
+        },
     )
 }
 
