@@ -17,11 +17,11 @@ mod glass_sphere;
 mod paraboloid;
 mod planar_chains;
 mod planar_mirror;
+pub mod reading;
+pub mod report;
 mod sphere_mirror;
 mod stigmatic_refractors;
 mod water_waves;
-pub mod reading;
-pub mod report;
 
 use nephroid_analytic::kinds::{Estimate, rounding_error};
 use serde_json::Value;
