@@ -88,7 +88,7 @@ fn slab_orders_are_traced_bundles() {
     while compared < 2000 {
         let slab = cases.slab();
         let order = cases.next(0.0, 6.0) as u32;
-        let (theta, phi) = (cases.next(0.05, 1.4), cases.next(0.0, 6.28));
+        let (theta, phi) = (cases.next(0.05, 1.4), cases.next(0.0, 6.2));
         let direction = |a: f64, b: f64| {
             // Offsets on a plane at unit distance below the light: dΩ = cos³ du dv.
             let t = libm::tan(theta);
@@ -173,11 +173,14 @@ fn slab_series_and_views() {
     }
 }
 
-/// Walks a ray from the floor point through mirrors, given as lines (point, direction, length), in plan; reports, leg by
+/// A mirror in plan: its end and the unit direction it runs along from there.
+type HalfLine = ((f64, f64), (f64, f64));
+
+/// Walks a ray from the floor point through mirrors in plan; reports, leg by
 /// leg, on which side the light passes and whether it is ahead on the leg.
 fn legs(
     (mut p, mut d): ((f64, f64), (f64, f64)),
-    mirrors: &[((f64, f64), (f64, f64))],
+    mirrors: &[HalfLine],
     light: (f64, f64),
     bounces: u32,
 ) -> Vec<(f64, bool)> {
@@ -209,11 +212,11 @@ fn legs(
     out
 }
 
-/// Counts the rays from (x, y) that pass the light after 0, 1, ... `bounces` reflections, with their plan lengths found by
-/// bisection of the direction.
+/// Counts the rays from (x, y) that pass the light after 0, 1, ... `bounces` reflections: sign changes of the offset over
+/// dense directions.
 fn rays_to_light(
     p: (f64, f64),
-    mirrors: &[((f64, f64), (f64, f64))],
+    mirrors: &[HalfLine],
     light: (f64, f64),
     bounces: u32,
 ) -> Vec<usize> {
@@ -307,7 +310,7 @@ fn corridors_show_two_images_of_each_number() {
             reflectance: 0.9,
         };
         let (x, y) = (width * cases.next(0.1, 0.9), cases.next(-0.5, 0.5));
-        // Lines without end, as two half lines each.
+        // Long enough for all directions but those along the mirrors.
         let mirrors = [((0.0, -1e6), (0.0, 1.0)), ((width, -1e6), (0.0, 1.0))];
         let light = (corridor.light.x, corridor.light.y);
         let counts = rays_to_light((x, y), &mirrors, light, 4);

@@ -247,7 +247,7 @@ impl SphereMirror<f64> {
             }
             (before, here) = (here, after);
         }
-        nearest.is_finite().then(|| Singularity {
+        nearest.is_finite().then_some(Singularity {
             kind: SingularityKind::Fold,
             distance: nearest * self.radius,
         })

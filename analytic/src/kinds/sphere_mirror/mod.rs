@@ -20,15 +20,18 @@
 //! J_t = 0 and to the axis.
 
 mod circle;
+mod conditioning;
 mod eye;
 mod fold;
+mod visibility;
 
 pub use eye::Seen;
 
-use crate::kinds::{Estimate, rounding_error};
+use crate::kinds::Estimate;
 use crate::scalar::Scalar;
 use crate::vector::{Vec3, vec3};
 use circle::Alhazen;
+use conditioning::Lengths;
 
 /// The reflecting side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,31 +145,6 @@ impl<S: Scalar> SphereMirror<S> {
             Light::Beam { .. } => S::ZERO,
         };
         self.centre.length() + self.radius + x.length() + light
-    }
-
-    /// By how much a direction from the centre is on the cap, negative off it.
-    fn on_cap(&self, normal: Vec3<S>) -> S {
-        if self.cap_cos_min <= -S::ONE {
-            S::ONE / S::ZERO
-        } else {
-            normal.dot(self.cap_axis) - self.cap_cos_min
-        }
-    }
-
-    /// By how much a segment from `start`, in units of the radius, along a unit vector over `length` passes the cap,
-    /// negative if it meets it.
-    fn clearance(&self, start: Vec3<S>, direction: Vec3<S>, length: S) -> S {
-        let across = start.cross(direction).length();
-        let ahead = -start.dot(direction);
-        if across >= S::ONE {
-            return across - S::ONE;
-        }
-        let half = ((S::ONE - across) * (S::ONE + across)).sqrt();
-        let past = |t: S| {
-            let off = -self.on_cap(start + direction * t);
-            (-t).max(t - length).max(off)
-        };
-        past(ahead - half).min(past(ahead + half))
     }
 
     /// Visits every mirror point of the whole sphere that reflects the light to `x` [m] above it and with both legs on the
@@ -298,31 +276,15 @@ impl<S: Scalar> SphereMirror<S> {
         })
     }
 
-    /// The smallest of all amounts by which a mirror point is on the cap, above the receiver, and in free view of the light
-    /// and of the receiver point, in units of the radius.
-    fn margin(&self, setting: &Setting<S>, normal: Vec3<S>, height: S) -> S {
-        let mut margin = self.on_cap(normal).min(height);
-        if self.side == Side::Concave {
-            // The legs leave the mirror inwards: start at the far end of the chord, where they can meet the cap again.
-            let to_source = if setting.far {
-                (setting.source, S::ONE / S::ZERO)
-            } else {
-                let leg = setting.source - normal;
-                (leg.normalized(), leg.length())
-            };
-            let leg = setting.receiver - normal;
-            for (direction, length) in [to_source, (leg.normalized(), leg.length())] {
-                let chord = -S::TWO * normal.dot(direction);
-                let off = -self.on_cap(normal + direction * chord);
-                margin = margin.min((chord - length).max(off));
-            }
-        }
-        margin
-    }
-
-    /// Irradiance at the receiver point `x` by one reflection (LSDE) [W/m²].
+    /// Irradiance at the receiver point `x` by one reflection (LSDE) [W/m²]; without a bound if light and point are both at
+    /// the centre.
     pub fn caustic(&self, x: Vec3<S>) -> Estimate<S> {
         let mut sum = Estimate::NONE;
+        let setting = self.setting(x);
+        if setting.receiver.length() == S::ZERO && setting.source.length() == S::ZERO {
+            // Every mirror point reflects the centre to itself.
+            sum.error = S::ONE / S::ZERO;
+        }
         self.for_each_root(x, |root| {
             let marginal = root.margin.abs() <= root.uncertainty;
             let lit = root.margin >= S::ZERO;
@@ -346,100 +308,5 @@ impl<S: Scalar> SphereMirror<S> {
                 visit(root);
             }
         });
-    }
-
-    /// Direct irradiance at the receiver point `x`, in the shadow of the mirror or not [W/m²].
-    pub fn direct(&self, x: Vec3<S>) -> Estimate<S> {
-        let setting = self.setting(x);
-        let (free, direction, length) = match self.light {
-            Light::Point {
-                position,
-                intensity,
-            } => {
-                let leg = setting.source - setting.receiver;
-                let e = crate::kinds::diffuse::direct(position, intensity, x);
-                (e, leg.normalized(), leg.length())
-            }
-            Light::Beam {
-                direction,
-                irradiance,
-            } => {
-                let mut sum = Estimate::NONE;
-                if direction.z < S::ZERO {
-                    sum.add(-direction.z * irradiance, S::ONE / -direction.z);
-                }
-                (sum, -direction, S::ONE / S::ZERO)
-            }
-        };
-        let clearance = self.clearance(setting.receiver, direction, length);
-        let noise = rounding_error(self.scale(x) / self.radius, S::ZERO);
-        let mut sum = if clearance >= -noise {
-            free
-        } else {
-            Estimate::NONE
-        };
-        if clearance.abs() <= noise {
-            sum.error += free.value;
-        }
-        sum
-    }
-}
-
-/// The lengths and angles of a root, in units of the radius.
-struct Lengths<S> {
-    r1: S,
-    r2: S,
-    /// r1 + r2; 1 for parallel light.
-    sum: S,
-    /// r1 r2; r2 for parallel light.
-    product: S,
-    cos_i: S,
-    sin_i: S,
-    tangential: S,
-    sagittal: S,
-    /// Height of the mirror point above the receiver.
-    height: S,
-}
-
-impl<S: Scalar> Lengths<S> {
-    fn far(&self) -> bool {
-        !self.r1.is_finite()
-    }
-
-    /// |∂g| per displacement of source and receiver.
-    fn reach(&self) -> S {
-        if self.far() {
-            S::ONE + self.r2
-        } else {
-            self.sum
-        }
-    }
-
-    /// By how much φ moves per displacement of source and receiver: ∂g over |g'| = cos i |J_t|.
-    fn moved(&self) -> S {
-        self.reach() / (self.cos_i * self.tangential.abs())
-    }
-
-    /// Relative change of E per displacement of source and receiver.
-    ///
-    /// Along the circle r1 and r2 change by ± sin i, their sum not at all (Fermat), and cos i by sin i |cos i/r - σ|;
-    /// moving an end of a leg turns it by 1/r. Moving the mirror point across the plane of incidence changes cos θ_x alone.
-    fn conditioning(&self, sigma: S) -> S {
-        let (c, s, two) = (self.cos_i, self.sin_i, S::TWO);
-        let turn = |r: S| (c / r - sigma).abs();
-        let (turns, difference) = if self.far() {
-            (S::ONE + turn(self.r2), S::ONE)
-        } else {
-            (turn(self.r1) + turn(self.r2), (self.r1 - self.r2).abs())
-        };
-        let (reach, moved) = (self.reach(), self.moved());
-        let tangential = two
-            + two * reach / c * (S::ONE + s / c)
-            + moved * s * two * (difference + self.product * turns / c) / c;
-        let sagittal =
-            two + two * two * reach + moved * s * two * (difference * c + self.product * turns);
-        let shift = S::ONE + moved + reach / self.sagittal.abs();
-        let cosine = shift / self.height.abs() + shift / self.r2;
-        tangential / self.tangential.abs() + sagittal / self.sagittal.abs() + cosine
     }
 }
