@@ -72,9 +72,10 @@ fn every_value_of_every_file_is_met() {
                 placed.item,
                 row.key
             );
-            // Near a fold the bound replaces the tolerance: it must be one.
+            // Near a fold the bound replaces the tolerance, so it must be one. The nearest point, K3-06, is 2e-6 of the
+            // fold's radius away from it: about 5e5 roundings for each of a few inputs.
             assert!(
-                row.error_bound <= 1e-9 * row.value.abs(),
+                row.error_bound <= 1e-8 * row.value.abs(),
                 "{file} {} {}: bound {:e}",
                 placed.item,
                 row.key,

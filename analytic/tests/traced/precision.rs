@@ -15,7 +15,8 @@ trait Scene {
     fn value<S: Scalar>(&self, p: &[S]) -> Estimate<S>;
 }
 
-/// How often the bound was used up to which part, and how much larger than the difference it is at worst.
+/// Compares both precisions at random parameters; prints how much of the bound is used at worst, and its median in units
+/// of rounding.
 fn check(name: &str, trials: u32, seed: u64, scene: &impl Scene) {
     let mut r = Random(seed);
     let (mut compared, mut worst) = (0, 0.0_f64);
@@ -49,14 +50,9 @@ fn check(name: &str, trials: u32, seed: u64, scene: &impl Scene) {
     assert!(worst > 1e-3 && median < 3e3, "{name} {worst} {median}");
 }
 
-fn between<S: Scalar>(t: S, low: f64, high: f64) -> S {
-    // Sixteenths: the bounds are exact, and both precisions see the same rounding of the parameter or none.
-    S::from_f64(low) + t * S::from_f64(high - low)
-}
-
-/// The parameter as the `f32` that both precisions start from.
+/// A parameter from low to high, rounded to `f32` in both precisions.
 fn shared<S: Scalar>(t: S, low: f64, high: f64) -> S {
-    let single = between(t.to_f64() as f32, low, high);
+    let single = (low + t.to_f64() * (high - low)) as f32;
     S::from_f64(f64::from(single))
 }
 
@@ -136,38 +132,51 @@ impl Scene for Lens {
     }
 }
 
+fn ball<S: Scalar>(p: &[S]) -> GlassSphere<S> {
+    let side = if p[4] > S::HALF { S::ONE } else { -S::ONE };
+    GlassSphere {
+        index: shared(p[0], 1.125, 2.25),
+        radius: S::ONE,
+        irradiance: S::ONE,
+        receiver_z: side * shared(p[1], 1.0, 4.0),
+        max_incidence: shared(p[2], 1.0, 1.5),
+    }
+}
+
 struct Ball(u32);
 impl Scene for Ball {
     fn value<S: Scalar>(&self, p: &[S]) -> Estimate<S> {
-        let side = if p[4] > S::HALF { S::ONE } else { -S::ONE };
-        GlassSphere {
-            index: shared(p[0], 1.125, 2.25),
-            radius: S::ONE,
-            irradiance: S::ONE,
-            receiver_z: side * shared(p[1], 1.0, 4.0),
-            max_incidence: shared(p[2], 1.0, 1.5),
-        }
-        .caustic(shared(p[3], 0.0, 1.5), self.0)
+        ball(p).caustic(shared(p[3], 0.0, 1.5), self.0)
     }
+}
+
+/// Two waves, if they are flat enough.
+fn waves<S: Scalar>(p: &[S]) -> Option<WaterWaves<S>> {
+    let wave = |j: usize| Wave {
+        amplitude: shared(p[j], 0.0, 0.03125),
+        wave_number: shared(p[j + 1], 2.0, 10.0),
+        phase: shared(p[j + 2], -1.0, 1.0),
+    };
+    let depth = shared(p[1], 1.0, 3.0);
+    WaterWaves::new(
+        shared(p[0], 1.25, 1.5),
+        depth,
+        S::ONE,
+        vec![wave(3), wave(6)],
+    )
+    .ok()
 }
 
 struct Waves;
 impl Scene for Waves {
     fn value<S: Scalar>(&self, p: &[S]) -> Estimate<S> {
-        let wave = |j: usize| Wave {
-            amplitude: shared(p[j], 0.0, 0.03125),
-            wave_number: shared(p[j + 1], 2.0, 10.0),
-            phase: shared(p[j + 2], -1.0, 1.0),
-        };
-        let depth = shared(p[1], 1.0, 3.0);
-        WaterWaves::new(
-            shared(p[0], 1.25, 1.5),
-            depth,
-            S::ONE,
-            vec![wave(3), wave(6)],
-        )
-        .map_or(Estimate::NONE, |w| w.caustic(shared(p[2], -1.0, 1.0)))
+        waves(p).map_or(Estimate::NONE, |w| w.caustic(shared(p[2], -1.0, 1.0)))
     }
+}
+
+/// 2^-k.
+fn power_of_half(k: u32) -> f64 {
+    (0..k).fold(1.0, |p, _| p * 0.5)
 }
 
 #[test]
@@ -182,4 +191,52 @@ fn bounds_hold_in_single_precision() {
     check("sphere, two refractions", 3000, 28, &Ball(2));
     check("sphere, internal reflection", 3000, 29, &Ball(3));
     check("waves", 3000, 30, &Waves);
+}
+
+/// Towards a fold, where two roots become one and none, down to the last bit of single precision.
+#[test]
+fn bounds_hold_at_folds_in_single_precision() {
+    let mut r = Random(31);
+    let mut infinite = 0;
+    let mut compare = |what: &str, low: Estimate<f32>, high: Estimate<f64>| {
+        let error = f64::from(low.error) + high.error;
+        let difference = (f64::from(low.value) - high.value).abs();
+        infinite += u32::from(!error.is_finite());
+        assert!(
+            difference <= error || !error.is_finite(),
+            "{what}: {low:?} {high:?}"
+        );
+    };
+    for trial in 0..120 {
+        let p: Vec<f32> = (0..16).map(|_| r.between(0.0, 1.0) as f32).collect();
+        let exact: Vec<f64> = p.iter().map(|&v| f64::from(v)).collect();
+        let m = 2 + trial % 3;
+        let (low, high) = (ball::<f32>(&p), ball::<f64>(&exact));
+        let mut folds = vec![];
+        high.for_each_fold(m, |f| folds.push(f.radius));
+        for fold in folds.iter().filter(|f| **f > 1e-3 && **f < 20.0) {
+            for k in 6..26_u32 {
+                for side in [-1.0, 1.0] {
+                    let rho = (fold * (1.0 + side * power_of_half(k))) as f32;
+                    let what = format!("sphere {p:?} m = {m} fold {fold} rho {rho}");
+                    compare(&what, low.caustic(rho, m), high.caustic(f64::from(rho), m));
+                }
+            }
+        }
+        let (Some(low), Some(high)) = (waves::<f32>(&p), waves::<f64>(&exact)) else {
+            continue;
+        };
+        let mut folds = vec![];
+        high.for_each_fold(-1.0, 1.0, |f| folds.push(f.x));
+        for fold in folds {
+            for k in 6..26_u32 {
+                for side in [-1.0, 1.0] {
+                    let x = (fold + side * power_of_half(k)) as f32;
+                    let what = format!("waves {p:?} fold {fold} x {x}");
+                    compare(&what, low.caustic(x), high.caustic(f64::from(x)));
+                }
+            }
+        }
+    }
+    assert!(infinite > 10, "{infinite}");
 }
