@@ -86,6 +86,43 @@ fn whole_image_means_are_the_sum_of_the_pixels() {
 }
 
 #[test]
+fn a_long_schedule_is_the_average_of_its_bandwidths() {
+    let mut mirror_wall = entry::load("mirror-wall").unwrap();
+    (mirror_wall.camera.width, mirror_wall.camera.height) = (16, 16);
+    for (technique, kernel, n, tolerance) in [
+        (Technique::Merge, Kernel::Disc, 8_i32, 1e-3),
+        (Technique::Camera, Kernel::Cone, 8, 1e-3),
+    ] {
+        // From 0.4 down to 0.13: what some eight hundred iterations of a progressive radius reach.
+        let schedule: Vec<f64> = (1..=n)
+            .map(|i| 0.4 * libm::pow(f64::from(i), -0.55))
+            .collect();
+        let run = |b: &[f64]| class_means(&mirror_wall, technique, kernel, b, tolerance).unwrap();
+        let together = run(&schedule);
+        let single: Vec<_> = schedule.iter().map(|b| run(&[*b])).collect();
+        for (c, (class, m)) in together.iter().enumerate() {
+            for (k, got) in [m.mean, m.second_moment].into_iter().enumerate() {
+                let (mut sum, mut bound) = (0.0, 0.0);
+                for one in &single {
+                    let b = [one[c].1.mean, one[c].1.second_moment][k];
+                    sum += b.value / f64::from(n);
+                    bound += b.error / f64::from(n);
+                }
+                let off = (got.value - sum).abs();
+                assert!(
+                    off <= got.error + bound,
+                    "{technique} {class} {k} {off:e} {got:?}"
+                );
+                assert!(
+                    got.error <= 10.0 * tolerance * sum,
+                    "{technique} {class} {k} {got:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn class_means_have_the_same_bits_for_any_number_of_threads() {
     let mut mirror_wall = entry::load("mirror-wall").unwrap();
     (mirror_wall.camera.width, mirror_wall.camera.height) = (24, 24);

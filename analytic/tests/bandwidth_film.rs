@@ -143,8 +143,8 @@ fn pixels_agree_with_supersampling_and_add_up_to_the_region() {
                 }
             }
         }
-        let targets: Vec<[f64; 2]> = rows.iter().map(|r| r.map(|v| 1e-4 * v)).collect();
-        let region = film.strip(0..size, &targets, 1e-4);
+        let targets: Vec<[f64; 2]> = rows.iter().map(|r| r.map(|v| 1e-3 * v)).collect();
+        let region = film.strip(0..size, &targets, 1e-3);
         for c in 0..2 {
             for (o, m) in [region[c].mean, region[c].second_moment]
                 .into_iter()
