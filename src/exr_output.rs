@@ -14,7 +14,18 @@ use crate::output::write_whole;
 
 /// The attributes that every image of this program carries: version, scene and parameters (JSON of the entry).
 pub fn metadata(entry: &Entry) -> Vec<(String, String)> {
-    let parameters = serde_json::to_string(entry).unwrap_or_default();
+    // EXR strings are bytes: JSON has an escape for what is not ASCII.
+    let mut parameters = String::new();
+    for c in serde_json::to_string(entry).unwrap_or_default().chars() {
+        if c.is_ascii() {
+            parameters.push(c);
+        } else {
+            let mut units = [0; 2];
+            for unit in c.encode_utf16(&mut units) {
+                parameters.push_str(&format!("\\u{unit:04x}"));
+            }
+        }
+    }
     vec![
         (
             "nephroid:version".to_owned(),
@@ -47,8 +58,8 @@ pub fn write_exr(
     });
     let mut attributes = LayerAttributes::default();
     for (key, value) in metadata {
-        let text = AttributeValue::Text(text(value));
-        attributes.other.insert(text_key(key), text);
+        let value = AttributeValue::Text(text(value));
+        attributes.other.insert(text(key), value);
     }
     let encoding = Encoding {
         compression: Compression::ZIP16,
@@ -89,16 +100,12 @@ pub fn rounded_up(bound: f64) -> f64 {
 }
 
 fn text(value: &str) -> Text {
-    // EXR strings are bytes; `Text` refuses what is not one byte per character.
+    // `Text` refuses what is not one byte per character.
     let plain: String = value
         .chars()
         .map(|c| if c.is_ascii() { c } else { '?' })
         .collect();
     Text::from(plain.as_str())
-}
-
-fn text_key(value: &str) -> Text {
-    text(value)
 }
 
 /// Sorts the header's attributes by name: the library keeps them in a hash map, whose order changes from run to run. The

@@ -24,7 +24,7 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
     /// Relative tolerance of a pixel's value, 1e-12 to 0.1.
-    #[arg(long, value_name = "T", default_value_t = DEFAULT_TOLERANCE, value_parser = tolerance)]
+    #[arg(long, value_name = "T", default_value_t = DEFAULT_TOLERANCE, allow_negative_numbers = true, value_parser = tolerance)]
     tolerance: f64,
     #[arg(long, help = format!(
         "Also write a PNG of the sum beside it. Fixed exposure: {DISPLAY_TRANSFORM}"

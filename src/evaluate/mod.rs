@@ -8,12 +8,20 @@
 //! Each other schema is one more arm of [`evaluate`].
 
 mod bandwidth;
+mod conic_mirrors;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod glass_slab;
+mod glass_sphere;
+mod paraboloid;
+mod planar_chains;
 mod planar_mirror;
 pub mod reading;
 pub mod report;
+mod sphere_mirror;
+mod stigmatic_refractors;
+mod water_waves;
 
 use nephroid_analytic::kinds::{Estimate, rounding_error};
 use serde_json::Value;
@@ -56,8 +64,19 @@ fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
         "planar-mirror" => planar_mirror::configuration,
         "cylinder-cup" => cylinder_cup::configuration,
         "flat-interface" => flat_interface::configuration,
+        "glass-slab" => glass_slab::configuration,
+        "concave-sphere" => sphere_mirror::concave,
+        "convex-sphere" => sphere_mirror::convex,
+        "planar-chains" => planar_chains::configuration,
+        "paraboloid" => paraboloid::configuration,
+        "conic-mirrors" => conic_mirrors::configuration,
+        "stigmatic-refractors" => stigmatic_refractors::configuration,
+        "glass-sphere" => glass_sphere::configuration,
+        "water-waves" => water_waves::configuration,
         other => {
-            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface";
+            let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface, glass-slab, \
+                           concave-sphere, convex-sphere, planar-chains, paraboloid, \
+                           conic-mirrors, stigmatic-refractors, glass-sphere, water-waves";
             return Err(top.error("scene", &format!("`{other}`"), allowed));
         }
     };
@@ -110,6 +129,37 @@ fn single(value: f64, conditioning: f64) -> Estimate<f64> {
         value,
         error: rounding_error(value, conditioning),
         roots: 1,
+    }
+}
+
+/// The rows of a point that at most one ray of the class LSDE lights; direct light only where the scene compares it.
+fn add_one_root(
+    rows: &mut report::Rows<'_>,
+    albedo: f64,
+    direct: Option<Estimate<f64>>,
+    caustic: Estimate<f64>,
+) -> Result<(), Error> {
+    if let Some(direct) = direct {
+        rows.add("E_direct", direct)?;
+        rows.add("L_total", radiance(albedo, sum(direct, caustic)))?;
+    }
+    rows.add("E_caustic", caustic)?;
+    rows.add("L_caustic", radiance(albedo, caustic))?;
+    let roots = [caustic];
+    let count = usize::from(caustic.roots > 0);
+    rows.add_class("LSDE", caustic, roots.get(..count).unwrap_or_default())?;
+    rows.add_missing_classes()
+}
+
+/// Checks that the position `key` is (0, 0, z), to 1e-9 of its size.
+fn on_axis(p: &Object<'_>, key: &str, z: f64, what: &str) -> Result<(), Error> {
+    let at = p.vector(key)?;
+    let off = at.x.abs().max(at.y.abs()).max(f64::abs(at.z - z));
+    if off <= 1e-9 * (1.0 + z.abs()) {
+        Ok(())
+    } else {
+        let allowed = format!("{what}, here [0, 0, {z}]");
+        Err(p.error(key, &format!("{:?}", at.to_f64()), &allowed))
     }
 }
 

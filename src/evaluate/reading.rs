@@ -31,6 +31,11 @@ fn shown(value: &Value) -> String {
     }
 }
 
+/// What an array of `N` numbers may be.
+fn array_of<const N: usize>() -> String {
+    format!("an array of {N} finite numbers from -{LARGEST} to {LARGEST}")
+}
+
 impl<'a> Object<'a> {
     /// The top of a file.
     ///
@@ -237,8 +242,29 @@ impl<'a> Object<'a> {
     /// # Errors
     /// [`Error::Content`] if it is missing, of another length or holds something else.
     pub fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Error> {
-        let allowed = format!("an array of {N} finite numbers from -{LARGEST} to {LARGEST}");
+        let value = self.required(key, &array_of::<N>())?;
+        self.numbers_of(key, value)
+    }
+
+    /// An array of arrays of `N` numbers each.
+    ///
+    /// # Errors
+    /// [`Error::Content`] if it is missing or holds something else.
+    pub fn rows<const N: usize>(&self, key: &str) -> Result<Vec<[f64; N]>, Error> {
+        let allowed = format!("an array, each row {}", array_of::<N>());
         let value = self.required(key, &allowed)?;
+        let array = value
+            .as_array()
+            .ok_or_else(|| self.error(key, &shown(value), &allowed))?;
+        array
+            .iter()
+            .enumerate()
+            .map(|(i, row)| self.numbers_of(&format!("{key}[{i}]"), row))
+            .collect()
+    }
+
+    fn numbers_of<const N: usize>(&self, key: &str, value: &Value) -> Result<[f64; N], Error> {
+        let allowed = array_of::<N>();
         let array = value
             .as_array()
             .filter(|a| a.len() == N)

@@ -53,6 +53,12 @@ impl Domain {
         both
     }
 
+    /// Signed distance of the centre from the nearest border, positive inside; infinite without borders.
+    pub fn room(&self) -> f64 {
+        let room = self.half_planes.iter().map(|p| p.h);
+        room.fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether nothing of the domain is within a distance of the centre (it may also be found later to be empty).
     pub fn is_beyond(&self, radius: f64) -> bool {
         self.empty || self.half_planes.iter().any(|p| !(p.h > -radius))

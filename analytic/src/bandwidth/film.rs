@@ -41,8 +41,6 @@ struct Layer {
     hidden: Vec<ConvexSet>,
     /// Of it, what is lit at bandwidth zero.
     lit: ConvexSet,
-    /// Along the border of this set the mollified E changes fast.
-    border: ConvexSet,
 }
 
 /// The expectation of the image of an entry by a regularized estimator.
@@ -198,7 +196,7 @@ impl FilmExpectation {
                 }
             },
             peak: |u: f64, v: f64| self.peak(layer, u, v),
-            border: &layer.border,
+            on_border: |u: f64, v: f64| expectation.is_on_lit_border(rays.floor_point(u, v)),
         };
         integrand.integrate(pieces, ROUNDS, target)
     }
@@ -248,11 +246,6 @@ fn layer(
         .filter(|h| !any.inside.half_planes.contains(h))
         .copied()
         .collect();
-    let mut border = extra.clone();
-    if technique == Technique::Merge {
-        // Photons end at the floor's edge, inside what is seen.
-        border.extend_from_slice(&any.inside.half_planes);
-    }
     Some(Layer {
         class,
         eye,
@@ -260,9 +253,6 @@ fn layer(
         seen: vec![seen],
         hidden: any.outside.clone(),
         lit: ConvexSet { half_planes: extra },
-        border: ConvexSet {
-            half_planes: border,
-        },
     })
 }
 

@@ -118,6 +118,8 @@ pub(super) struct Profile {
     cells: Vec<Cell>,
     // Von Mises–Fisher: (k, normaliser / n, normaliser² / n) per bandwidth; otherwise empty.
     smooth: Vec<(f64, f64, f64)>,
+    /// φ̄ and φ̄² at the top.
+    top: [f64; 2],
     /// Where the kernel ends.
     pub end: f64,
     /// Levels at which the kernel jumps or kinks, ascending; the end is the last.
@@ -159,12 +161,13 @@ impl Profile {
             rules: gauss_rules(),
             cells: Vec::new(),
             smooth: Vec::new(),
+            top: [0.0; 2],
             end: edges.last().copied().unwrap_or(0.0),
             edges,
             pieces,
         };
         profile.make_cells();
-        profile
+        profile.with_top()
     }
 
     fn von_mises_fisher(sorted: &[f64]) -> Profile {
@@ -225,10 +228,20 @@ impl Profile {
             rules: gauss_rules(),
             cells,
             smooth,
+            top: [0.0; 2],
             end: last,
             edges: Vec::new(),
             pieces,
         }
+        .with_top()
+    }
+
+    fn with_top(mut self) -> Profile {
+        self.top = match self.pieces.first() {
+            Some(p) => self.heights(p, 0.0),
+            None => [0.0; 2],
+        };
+        self
     }
 
     fn make_cells(&mut self) {
@@ -290,10 +303,8 @@ impl Profile {
 
     /// φ̄²/φ̄ at the top.
     pub fn ratio(&self) -> f64 {
-        match self.pieces.first().map(|p| self.heights(p, 0.0)) {
-            Some([mean, square]) if mean > 0.0 => square / mean,
-            _ => 0.0,
-        }
+        let [mean, square] = self.top;
+        if mean > 0.0 { square / mean } else { 0.0 }
     }
 
     fn heights(&self, piece: &Piece, g: f64) -> [f64; 2] {
@@ -337,7 +348,9 @@ impl Profile {
                     }
                     r
                 };
-                if let Some(r) = escalate(&mut start, tolerance, &sum, |o| whole(o, density)) {
+                if let Some(r) =
+                    escalate(&mut start, tolerance, &sum, [0.0; 2], |o| whole(o, density))
+                {
                     sum.add(&r);
                     continue;
                 }
@@ -363,7 +376,11 @@ impl Profile {
         density: &mut impl FnMut(f64) -> [f64; 2],
         sum: &mut Pair,
     ) {
-        let result = escalate(start, tolerance, sum, |order| {
+        // Near its end a kernel is a small difference of large terms: rounding of the size of its top.
+        let (top, middle) = (self.top, density(0.5 * (a + b)));
+        let noise =
+            core::array::from_fn(|k| 4.0 * f64::EPSILON * top[k] * (b - a) * middle[k].abs());
+        let result = escalate(start, tolerance, sum, noise, |order| {
             gauss(&self.rules[order], a, b, |g| {
                 let (h, v) = (self.heights(piece, g), density(g));
                 [h[0] * v[0], h[1] * v[1]]
@@ -410,12 +427,13 @@ pub(super) fn gauss(
     r
 }
 
-/// Raises the order until two neighbouring rules agree to a part of what is integrated here or was (`sum`) before;
-/// `start` remembers the order that was enough last time. `None` if the highest order is not enough.
+/// Raises the order until two neighbouring rules agree to a part of what is integrated here or was (`sum`) before, or to
+/// the rounding of the integrand (`noise`); `start` remembers the order that was enough last time. `None` if the highest order is not enough.
 pub(super) fn escalate(
     start: &mut usize,
     tolerance: f64,
     sum: &Pair,
+    noise: [f64; 2],
     mut rule: impl FnMut(usize) -> ([f64; 2], [f64; 2]),
 ) -> Option<Pair> {
     let first = (*start).clamp(1, ORDERS.len() - 1);
@@ -425,10 +443,11 @@ pub(super) fn escalate(
         let error: [f64; 2] =
             core::array::from_fn(|k| error_of_better((value[k] - before[k]).abs(), absolute[k]));
         let scale = |k: usize| absolute[k].max(sum.value[k].abs());
-        if (0..2).all(|k| error[k] <= tolerance * scale(k) + f64::MIN_POSITIVE)
+        if (0..2).all(|k| error[k] <= tolerance * scale(k) + noise[k] + f64::MIN_POSITIVE)
             || (order + 1 == ORDERS.len() && (0..2).all(|k| error[k] <= 1e-13 * absolute[k]))
         {
             *start = order;
+            let error = core::array::from_fn(|k| error[k] + noise[k]);
             return Some(Pair { value, error });
         }
         before = value;

@@ -334,7 +334,7 @@ impl<'a> Linked<'a> {
         sum: &mut Pair,
     ) {
         let mut density = |g: f64| self.density(z, escapes, g);
-        let found = escalate(start, tolerance, sum, |order| {
+        let found = escalate(start, tolerance, sum, [0.0; 2], |order| {
             gauss(&self.rules[order], from, to, &mut density)
         });
         match found {

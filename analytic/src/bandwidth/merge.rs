@@ -27,8 +27,8 @@ pub(super) struct Landing {
 }
 
 impl Landing {
-    /// `None` if the image of the light is not above the receiver's plane.
-    pub fn new(setting: &PlanarSetting, x: Vec3<f64>) -> Option<Self> {
+    /// With or without the receiver's edges. `None` if the image of the light is not above the receiver's plane.
+    pub fn new(setting: &PlanarSetting, x: Vec3<f64>, with_edges: bool) -> Option<Self> {
         let m = setting.receiver_normal;
         let image = setting.image();
         let height = (image - x).dot(m);
@@ -47,7 +47,7 @@ impl Landing {
             |normal: Vec3<f64>, room: f64| domain.cut([normal.dot(e1), normal.dot(e2)], room);
         // In front of the mirror.
         cut(-setting.mirror_normal, setting.mirror_height(x));
-        for e in &setting.receiver_edges {
+        for e in setting.receiver_edges.iter().filter(|_| with_edges) {
             cut(e.normal, e.offset - e.normal.dot(x));
         }
         // An edge N·s ≤ o of the mirror, seen from y': with u = o − N·y' and s = y' + (X − y') h/(h − h_X), h = h(y') < 0
@@ -67,6 +67,12 @@ impl Landing {
             strength: setting.strength,
             domain,
         })
+    }
+
+    /// Whether x itself is on the border of the lit set, to a distance.
+    pub fn is_on_border(&self, distance: f64) -> bool {
+        let room = self.domain.room();
+        room.abs() <= distance
     }
 }
 

@@ -86,7 +86,7 @@ impl Expectation {
         let x = Vec3::from_f64(x);
         let tolerance = tolerance.clamp(2e-14, 0.1);
         let result = match self.technique {
-            Technique::Merge => Landing::new(&self.setting, x).map(|landing| {
+            Technique::Merge => Landing::new(&self.setting, x, true).map(|landing| {
                 let floor = self.floor(x);
                 (
                     polar::integrate(&landing, &self.profile, tolerance, floor),
@@ -147,6 +147,13 @@ impl Expectation {
             (_, Some(u)) => u.sample_at_root() * self.profile.ratio(),
         };
         [mean, mean * factor]
+    }
+
+    /// Whether a receiver point is on the border of what the mirror lights (for `Merge`, of what photons reach: the
+    /// receiver's edges belong to it). The mollified irradiance changes fast there.
+    pub(super) fn is_on_lit_border(&self, x: Vec3<f64>) -> bool {
+        Landing::new(&self.setting, x, self.technique == Technique::Merge)
+            .is_some_and(|l| l.is_on_border(1e-8 * (1.0 + x.length())))
     }
 
     fn linked(&self, x: Vec3<f64>, unfolded: &Unfolded, tolerance: f64) -> Pair {

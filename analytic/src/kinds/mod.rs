@@ -3,12 +3,20 @@
 //! Every kind offers, per path class, the irradiance with an error bound, the specular roots behind it and the distance
 //! to the nearest singularity. Formulas are generic over [`Scalar`]; nothing here allocates unless it says so.
 
+pub mod conic_mirrors;
 pub mod cylinder_cup;
 pub mod diffuse;
 pub mod entry;
 pub mod flat_interface;
-
+pub mod glass_slab;
+pub mod glass_sphere;
+pub mod paraboloid;
+pub mod planar_chains;
 pub mod planar_mirror;
+pub mod singularity;
+pub mod sphere_mirror;
+pub mod stigmatic_refractors;
+pub mod water_waves;
 
 use crate::scalar::Scalar;
 
@@ -74,4 +82,17 @@ impl<S: Scalar> Estimate<S> {
 #[inline(always)]
 pub fn rounding_error<S: Scalar>(value: S, conditioning: S) -> S {
     value.abs() * (S::from_f64(4.0) + conditioning) * (S::EPSILON * S::from_f64(ROUNDINGS))
+}
+
+/// `base^exponent` by repeated squaring.
+fn power<S: Scalar>(base: S, mut exponent: u32) -> S {
+    let (mut result, mut square) = (S::ONE, base);
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            result = result * square;
+        }
+        square = square.squared();
+        exponent /= 2;
+    }
+    result
 }

@@ -248,7 +248,7 @@ pub struct Ladder {
 impl Default for Ladder {
     fn default() -> Self {
         Ladder {
-            rules: [3, 4, 6, 9, 13].map(Rule::gauss).into(),
+            rules: [2, 3, 4, 6, 9, 13].map(Rule::gauss).into(),
         }
     }
 }
@@ -259,8 +259,8 @@ const DEEPEST: u32 = 12;
 impl Ladder {
     /// ∫ f du dv over a polygon to an absolute tolerance plus `relative` times the value.
     ///
-    /// The order is raised until two neighbours agree; if none do, the polygon is quartered. The error returned is the
-    /// difference of the last two orders, which bounds the error of the lower one, plus rounding.
+    /// The order is raised until neighbours agree; if none do, the polygon is quartered. The error returned is the
+    /// difference of the last two orders or, should these agree by chance, a tenth of the one before, plus rounding.
     pub fn integrate(
         &self,
         polygon: &Polygon,
@@ -284,10 +284,12 @@ impl Ladder {
         }
         let mut before = polygon.integrate(&self.rules[0], f);
         let mut error = f64::INFINITY;
+        let mut last = f64::INFINITY;
         for rule in &self.rules[1..] {
             let value = polygon.integrate(rule, f);
-            error = (value - before).abs();
-            before = value;
+            let difference = (value - before).abs();
+            error = difference.max(0.1 * last);
+            (before, last) = (value, difference);
             let rounding = 16.0 * f64::EPSILON * value.abs();
             if error <= (relative * value.abs() + absolute).max(rounding) {
                 return Bounded {

@@ -44,7 +44,7 @@ pub struct PoolImage {
 
 /// What a vertical plane through the pinhole shows of the floor.
 struct WaterSlice {
-    /// Plan distances on the surface, cut by the footprint and by the floor's borders.
+    /// Plan distances on the surface, cut by the footprint and by the floor's borders; equal if no floor is seen.
     range: [f64; 2],
     /// Floor points at the footprint's ends, whether on the floor or not.
     ends: [[f64; 2]; 2],
@@ -211,7 +211,14 @@ impl PoolImage {
         let ([low, high], labels) = piece.clip(nadir, e, 0.0, f64::INFINITY)?;
         let ends = [low, high].map(|r| self.seen(self.towards(e, r)).0);
         let plan = |x: [f64; 2]| (x[0] - nadir[0]) * e[0] + (x[1] - nadir[1]) * e[1];
-        let (floor, cuts) = clip(&self.floor_edges, nadir, e, plan(ends[0]), plan(ends[1]))?;
+        let cut = clip(&self.floor_edges, nadir, e, plan(ends[0]), plan(ends[1]));
+        let Some((floor, cuts)) = cut else {
+            return Some(WaterSlice {
+                range: [low; 2],
+                ends,
+                labels: [u8::MAX - 1; 2],
+            });
+        };
         let mut range = [low, high];
         for k in 0..2 {
             if cuts[k] != u8::MAX {

@@ -9,7 +9,7 @@ use super::{CylinderCup, Light, Root};
 use crate::roots::bracketed;
 
 /// Rays per bounce with which the curve is searched.
-const RAYS: u32 = 1024;
+const RAYS: u32 = 512;
 
 /// A point of the caustic curve.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ impl CylinderCup<f64> {
     }
 
     fn distance_to_fold_of(&self, x: f64, y: f64, bounces: u32) -> Option<f64> {
-        let rays = RAYS * bounces.min(16);
+        let rays = RAYS * bounces.min(8);
         let (low, high) = self.fold_range();
         let at = |n: u32| low + (high - low) * (f64::from(n) + 0.5) / f64::from(rays);
         let mut nearest: Option<f64> = None;
@@ -133,4 +133,110 @@ pub(super) struct FoldRay {
     pub along: f64,
     /// p × d of the ray.
     pub across: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Beam, Wall, point_light::Lamp};
+    use super::*;
+
+    fn cup(light: Light<f64>) -> CylinderCup<f64> {
+        CylinderCup {
+            wall: Wall {
+                radius: 1.3,
+                height: None,
+                // Open towards the sun; a light on the wall stands on its edge of the arc.
+                cos_half_arc: Some(-0.6),
+            },
+            reflectance: 1.0,
+            light,
+        }
+    }
+
+    fn sun() -> Light<f64> {
+        Light::Beam(Beam {
+            irradiance: 1.0,
+            sin_elevation: 0.6,
+            cos_elevation: 0.8,
+        })
+    }
+
+    fn lamp(x: f64, y: f64) -> Light<f64> {
+        Light::Point(Lamp {
+            x,
+            y,
+            height: 1.0,
+            intensity: 1.0,
+        })
+    }
+
+    #[test]
+    fn one_bounce_of_the_beam_is_the_nephroid() {
+        let a: f64 = 1.3;
+        for n in -50..=50 {
+            let fold = cup(sun())
+                .fold(0.03 * f64::from(n), 1)
+                .expect("on the last leg");
+            let r2 = fold.x * fold.x + fold.y * fold.y;
+            let left = 4.0 * r2 - a * a;
+            let right = 27.0 * a * a * a * a * fold.y * fold.y;
+            assert!(
+                (left * left * left - right).abs() <= 1e-13 * (1.0 + right),
+                "{fold:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_light_on_the_wall_makes_the_cardioid() {
+        // Cusp at a/3; the cardioid is the track of a point of a circle of radius a/3 that rolls on one like it.
+        let a = 1.3;
+        for n in -50..=50 {
+            let i = 0.03 * f64::from(n);
+            let fold = cup(lamp(-a, 0.0)).fold(i, 1).expect("on the last leg");
+            // z = (a/3)(2 e^{it} - e^{2it}) with its cusp at a/3; t runs at twice the incidence angle.
+            let t = 2.0 * i;
+            let x = a / 3.0 * (2.0 * libm::cos(t) - libm::cos(2.0 * t));
+            let y = -a / 3.0 * (2.0 * libm::sin(t) - libm::sin(2.0 * t));
+            assert!(
+                libm::hypot(fold.x - x, fold.y - y) <= 1e-14,
+                "{i} {fold:?} {x} {y}"
+            );
+        }
+    }
+
+    #[test]
+    fn distances_are_measured_across_the_curve() {
+        for (light, bounces) in [
+            (sun(), 1),
+            (sun(), 2),
+            (sun(), 3),
+            (lamp(-1.3, 0.0), 1),
+            (lamp(-0.6, 0.3), 1),
+            (lamp(-0.6, 0.3), 2),
+        ] {
+            let cup = cup(light);
+            let mut measured = 0;
+            for n in 1..80 {
+                let Some(fold) = cup.fold(-1.47 + 0.037 * f64::from(n), bounces) else {
+                    continue;
+                };
+                if !fold.lit {
+                    continue;
+                }
+                let step = 1e-3;
+                let across = |d: f64| {
+                    let (x, y) = (fold.x - d * fold.sin_theta, fold.y + d * fold.cos_theta);
+                    cup.distance_to_fold(x, y, bounces).expect("a fold")
+                };
+                assert!(across(0.0) <= 1e-9, "{fold:?}");
+                let (left, right) = (across(-step), across(step));
+                // Another branch, or the cusp, may be nearer than the branch that was left.
+                assert!(left <= step * (1.0 + 1e-9) && right <= step * (1.0 + 1e-9));
+                measured +=
+                    usize::from((left - step).abs() <= 1e-9 && (right - step).abs() <= 1e-9);
+            }
+            assert!(measured >= 5, "{bounces} bounces: {measured}");
+        }
+    }
 }

@@ -25,7 +25,7 @@ use libm::{cos, sin};
 use crate::kinds::{Estimate, rounding_error};
 use crate::scalar::Scalar;
 use crate::scene::{ArcWall, DirectionalLight};
-use crate::vector::Vec3;
+use crate::vector::{Vec3, vec3};
 
 pub use beam::Beam;
 
@@ -183,6 +183,18 @@ impl<S: Scalar> CylinderCup<S> {
             self.wall.covers(angle.cos())
         };
         (2..=bounces).all(on_arc) && (root.tau <= chord || !on_arc(bounces + 1))
+    }
+
+    /// Where the ray of a root with `bounces` reflections meets the wall for the n-th time, 1 ≤ n ≤ `bounces` [m].
+    pub fn hit(&self, root: &Root<S>, bounces: u32, n: u32) -> Vec3<S> {
+        let count = |n: u32| S::from_f64(f64::from(n));
+        let chord = S::TWO * self.wall.radius * root.cos_incidence;
+        let after = |n: u32| root.tau + count(bounces - n.min(bounces)) * chord;
+        let phi = root.phi() + self.chord_turn(root) * count(n.max(1) - 1);
+        // The ray comes down evenly to z = 0.
+        let z = root.wall_z * after(n) / after(1);
+        let a = self.wall.radius;
+        vec3(a * phi.cos(), a * phi.sin(), z)
     }
 
     /// By how much the position angle changes along a chord.

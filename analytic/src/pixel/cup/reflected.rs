@@ -18,7 +18,7 @@ use crate::camera::Bounded;
 use crate::pixel::cup::CupImage;
 use crate::pixel::cup::area::WallSlice;
 use crate::pixel::cup::caustic::angles;
-use crate::pixel::events::{Probe, last_true, search};
+use crate::pixel::events::{Probe, first_false, search};
 use crate::pixel::fan::{Break, Fan, Singularity, integrate_between, sort};
 use crate::pixel::floor_polygon::FloorPolygon;
 use crate::pixel::quartic::Few;
@@ -128,7 +128,7 @@ impl CupImage {
             for pair in at.windows(2) {
                 let left = structure(pair[0]);
                 if left != structure(pair[1]) {
-                    let azimuth = last_true(pair[0], pair[1], |x| structure(x) == left);
+                    let azimuth = first_false(pair[0], pair[1], |x| structure(x) == left);
                     let middle = Break {
                         azimuth,
                         kind: Singularity::Logarithm,
