@@ -54,7 +54,12 @@ fn answers_per_point_and_class() {
 
 #[test]
 fn the_cup_knows_its_fold() {
-    let output = probe("cup", "tests/scenes/cup.toml", "x, y, z\n0.5,0,0\n0.7,0,0\n0.6,0,0\n", true);
+    let output = probe(
+        "cup",
+        "tests/scenes/cup.toml",
+        "x, y, z\n0.5,0,0\n0.7,0,0\n0.6,0,0\n",
+        true,
+    );
     let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let caustic: Vec<&Value> = answer["answers"]
         .as_array()
