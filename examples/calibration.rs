@@ -184,7 +184,8 @@ fn fault_runs(seeds: impl Iterator<Item = u64>) -> u64 {
                 total += 1;
                 survived += u64::from(!missed.is_empty());
                 println!(
-                    "seed {seed}: {name} {fault:?}: {}, {:.1} s",
+                    "seed {seed}: {name} {}: {}, {:.1} s",
+                    shown(fault),
                     if missed.is_empty() {
                         "different"
                     } else {
@@ -229,6 +230,13 @@ fn faults(name: &str) -> Vec<Fault> {
     let claimed = plan.iter().filter(|c| c.treatment != Treatment::NotSampled);
     faults.extend(claimed.map(|c| Fault::ClassDropped(c.class)));
     faults
+}
+
+fn shown(fault: Fault) -> String {
+    match fault {
+        Fault::ClassDropped(class) => format!("ClassDropped({class})"),
+        other => format!("{other:?}"),
+    }
 }
 
 /// Whether a fault changes a class that is or is not regularized.

@@ -18,8 +18,8 @@ use crate::judge::verdict::{Finding, State, decide};
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
 const MERGING_ITERATIONS: u32 = 8;
-/// Paths of a replicate for each pixel: clearing and summing the film costs a few percent of drawing them.
-const PATHS_PER_PIXEL: u64 = 16;
+/// Paths of a replicate for each pixel: clearing and summing the film costs a tenth of drawing them.
+const PATHS_PER_PIXEL: u64 = 8;
 /// Fewest paths of a replicate.
 const FEWEST_PATHS: u64 = 1 << 16;
 

@@ -18,6 +18,11 @@ const VARIANCE_ALLOWANCE: f64 = 1.3;
 const CONTRIBUTIONS_WANTED: u64 = 2 * FEWEST_CONTRIBUTIONS;
 /// The fewest contributions in any replicate of the pilot that are taken as a sign of this.
 const CONTRIBUTIONS_SAFE: u64 = FEWEST_CONTRIBUTIONS * 5 / 4;
+/// Each pilot makes replicates larger by a factor of up to 1024.
+const MOST_PILOTS: u32 = 4;
+/// Contributions in all of a pilot that give its variance to about 10 %, so that larger replicates need no pilot of
+/// their own.
+const CONTRIBUTIONS_FOR_VARIANCE: u64 = 1000;
 /// A class that is claimed and was not seen in the pilot gets at least this many paths in the final test before it is
 /// called missing: one contribution in a million paths would be seen with probability 1 - 2e-9.
 pub const PATHS_BEFORE_MISSING: u64 = 20_000_000;
@@ -53,7 +58,8 @@ pub struct Size {
     pub replicates: u32,
 }
 
-/// Runs pilots until replicates are large enough for normal means, then plans for the hardest check.
+/// Runs pilots until they have seen enough, makes replicates large enough for normal means, then plans for the hardest
+/// check.
 pub fn plan(
     prepared: &dyn Prepared,
     canvas: Canvas,
@@ -64,14 +70,21 @@ pub fn plan(
 ) -> Size {
     let mut shape = first;
     let mut pilot = Vec::new();
-    for phase in 1..=8 {
+    let mut factor = 1;
+    for phase in 1.. {
         pilot = run(prepared, canvas, &shape, seeds, phase, PILOT_REPLICATES);
-        let factor = growth(&pilot, checks, &shape, demand);
-        if factor <= 1 {
+        factor = growth(&pilot, checks, &shape, demand);
+        let mut seen = checks
+            .iter()
+            .map(|c| Sample::of_layers(&pilot, &c.layers))
+            .filter(|s| s.contributions > 0);
+        let enough = seen.all(|s| s.contributions >= CONTRIBUTIONS_FOR_VARIANCE);
+        if factor <= 1 || enough || phase == MOST_PILOTS {
             break;
         }
         shape.paths_per_iteration *= factor;
     }
+    shape.paths_per_iteration *= factor;
     let most = (demand.most_paths / shape.paths()).clamp(FEWEST_REPLICATES as u64, MOST_REPLICATES);
     let samples = checks
         .iter()
@@ -80,7 +93,8 @@ pub fn plan(
         if sample.contributions == 0 {
             return PATHS_BEFORE_MISSING.div_ceil(shape.paths());
         }
-        let variance = VARIANCE_ALLOWANCE * sample.variance;
+        // Paths are independent (photon maps too, being of bounded size), so the variance of a mean falls as 1/paths.
+        let variance = VARIANCE_ALLOWANCE * sample.variance / factor as f64;
         replicates_needed(variance, truth, demand.margin, demand.levels).unwrap_or(0)
     });
     let replicates = needed.max().unwrap_or(0);
