@@ -5,8 +5,11 @@
 
 pub mod bandwidth;
 pub mod camera;
+pub mod certificate;
 pub mod class;
-mod double_double;
+mod decimal;
+pub mod double_double;
+pub mod enclosure;
 pub mod gradient;
 pub mod kinds;
 pub mod optics;
