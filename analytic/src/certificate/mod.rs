@@ -11,7 +11,16 @@
 //!
 //! Functions that return an enclosure end in `_enclosed`.
 
+pub mod conic_mirrors;
+pub mod diffuse;
+pub mod paraboloid;
+pub mod planar_chains;
+pub mod planar_mirror;
+pub mod radiometry;
 pub mod roots;
+pub mod scene;
+pub mod source;
+pub mod stigmatic_refractors;
 
 use crate::enclosure::Enclosure;
 use crate::scalar::Scalar;
