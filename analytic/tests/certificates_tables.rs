@@ -53,7 +53,12 @@ impl Tally {
         {
             let class = path["class"].as_str().expect("a class");
             self.compare(id, &format!("paths.{class}.E"), &path["E"], claims);
-            self.compare_roots(id, class, path["roots"].as_array().expect("roots"), claims);
+            let roots = path["roots"].as_array().expect("roots");
+            self.compare_roots(id, &format!("paths.{class}.roots."), "E", roots, claims);
+        }
+        if let Some(roots) = item.get("roots").and_then(Value::as_array) {
+            self.compare_roots(id, "roots.", "E", roots, claims);
+            self.compare_roots(id, "roots.", "fluence", roots, claims);
         }
     }
 
@@ -82,28 +87,34 @@ impl Tally {
     }
 
     /// The listed roots and the claimed rays are the same numbers, in any order.
-    fn compare_roots(&mut self, id: &str, class: &str, roots: &[Value], claims: &[Claim]) {
-        let prefix = format!("paths.{class}.roots.");
+    fn compare_roots(
+        &mut self,
+        id: &str,
+        prefix: &str,
+        key: &str,
+        roots: &[Value],
+        claims: &[Claim],
+    ) {
         let mut rays: Vec<_> = claims
             .iter()
-            .filter(|c| c.key.starts_with(&prefix))
+            .filter(|c| c.key.starts_with(prefix) && c.key.ends_with(&format!(".{key}")))
             .map(|c| c.certified)
             .collect();
         if rays.iter().any(|r| r.undecided) {
             return;
         }
-        assert_eq!(rays.len(), roots.len(), "{id} {class}: {rays:?}");
+        assert_eq!(rays.len(), roots.len(), "{id} {prefix}: {rays:?}");
         self.counted += rays.len() as u32;
         let mut listed: Vec<_> = roots
             .iter()
-            .map(|r| Enclosure::from_decimal(r["E"].as_str().expect("E")).expect("E"))
+            .map(|r| Enclosure::from_decimal(r[key].as_str().expect(key)).expect(key))
             .collect();
         listed.sort_by(|a, b| a.low().total_cmp(&b.low()));
         rays.sort_by(|a, b| a.value.low().total_cmp(&b.value.low()));
         for (ray, exact) in rays.iter().zip(listed) {
             assert!(
                 ray.value.intersection(exact).is_some(),
-                "{id} {class}: {exact:?} {ray:?}"
+                "{id} {prefix}: {exact:?} {ray:?}"
             );
         }
     }
@@ -154,5 +165,8 @@ tables! {
     planar_chains "planar-chains" 1e-13 216 204;
     paraboloid "paraboloid" 1e-13 75 23;
     conic_mirrors "conic-mirrors" 1e-13 96 24;
+    flat_interface "flat-interface" 1e-12 206 37;
+    glass_slab "glass-slab" 1e-12 144 60;
+    cylinder_cup "cylinder-cup" 1e-10 370 158;
     stigmatic_refractors "stigmatic-refractors" 1e-12 72 24;
 }

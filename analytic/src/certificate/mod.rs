@@ -12,7 +12,11 @@
 //! Functions that return an enclosure end in `_enclosed`.
 
 pub mod conic_mirrors;
+pub mod cylinder_cup;
 pub mod diffuse;
+pub mod flat_interface;
+pub mod glass_slab;
+pub mod layers;
 pub mod paraboloid;
 pub mod planar_chains;
 pub mod planar_mirror;

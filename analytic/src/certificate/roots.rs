@@ -68,6 +68,20 @@ pub fn isolate(low: f64, high: f64, f: impl Fn(Jet) -> Jet) -> Zeros {
     found
 }
 
+/// All zeros of a function of period 2π on one turn; `None` if it has none of a few places where it is certainly not 0,
+/// so that a turn cannot begin there.
+pub fn full_turn(f: impl Fn(Jet) -> Jet) -> Option<Zeros> {
+    let turn = Enclosure::TWO * Enclosure::PI;
+    let start = (0..16)
+        .map(|i| -3.0 + 0.377 * f64::from(i))
+        .find(|&start| {
+            // The turn ends within rounding behind its beginning: nothing may be found twice there.
+            let seam = Enclosure::new(start, start + 1e-9);
+            !f(Jet::constant(seam)).value.may_vanish()
+        })?;
+    Some(isolate(start, start + turn.high() + 1e-12, f))
+}
+
 /// An interval with the signs of f at its ends, where they are certain.
 struct Part {
     at: Enclosure,

@@ -4,7 +4,10 @@
 //! `paths.LSDE.roots.0.E` and so on; a value that the scene does not have is not there.
 
 use crate::certificate::conic_mirrors::ConicMirror;
+use crate::certificate::cylinder_cup::{CylinderCup, Flatland};
 use crate::certificate::diffuse::{Floor, Sphere, furnace_enclosed};
+use crate::certificate::flat_interface::FlatInterface;
+use crate::certificate::glass_slab::GlassSlab;
 use crate::certificate::paraboloid::Paraboloid;
 use crate::certificate::planar_chains::{Corridor, Wedge};
 use crate::certificate::planar_mirror::PlanarMirror;
@@ -67,6 +70,10 @@ enum Kind {
     Paraboloid(Paraboloid),
     ConicMirror(ConicMirror),
     StigmaticRefractor(StigmaticRefractor),
+    FlatInterface(FlatInterface),
+    GlassSlab(GlassSlab),
+    CylinderCup(CylinderCup),
+    Flatland(Flatland),
 }
 
 impl Scene {
@@ -82,6 +89,10 @@ impl Scene {
             "paraboloid" => Kind::Paraboloid(Paraboloid::read(p)?),
             "conic-mirrors" => Kind::ConicMirror(ConicMirror::read(p)?),
             "stigmatic-refractors" => Kind::StigmaticRefractor(StigmaticRefractor::read(p)?),
+            "cylinder-cup" if p.has("x_line") => Kind::Flatland(Flatland::read(p)?),
+            "cylinder-cup" => Kind::CylinderCup(CylinderCup::read(p)?),
+            "flat-interface" => Kind::FlatInterface(FlatInterface::read(p)?),
+            "glass-slab" => Kind::GlassSlab(GlassSlab::read(p)?),
             _ => return None,
         };
         let albedo = p.number("albedo").unwrap_or(Enclosure::ZERO);
@@ -97,7 +108,14 @@ impl Scene {
             further: vec![],
         };
         Some(match &self.kind {
-            Kind::Floor(_) | Kind::Sphere(_) | Kind::Furnace(..) => return None,
+            Kind::Floor(_) | Kind::Sphere(_) | Kind::Furnace(..) | Kind::Flatland(_) => {
+                return None;
+            }
+            Kind::CylinderCup(cup) => Light {
+                direct: Some(cup.direct_enclosed(floor)),
+                classes: bounces(cup.orders(), |k| cup.caustic_enclosed(floor, k)),
+                further: vec![],
+            },
             Kind::PlanarMirror(mirror) => one(
                 Some(mirror.direct_enclosed(floor)),
                 mirror.caustic_enclosed(floor),
@@ -120,6 +138,10 @@ impl Scene {
                 one(Some(conic.direct_enclosed(x)), conic.caustic_enclosed(x))
             }
             Kind::StigmaticRefractor(glass) => one(None, glass.caustic_enclosed(x)),
+            Kind::FlatInterface(water) => {
+                one(Some(water.direct_enclosed(x)), water.caustic_enclosed(x))
+            }
+            Kind::GlassSlab(slab) => slab_light(slab, x),
         })
     }
 
@@ -127,6 +149,9 @@ impl Scene {
     fn look_enclosed(&self, camera: Point, aim: Point) -> Option<Seen> {
         match &self.kind {
             Kind::PlanarMirror(mirror) => Some(mirror.look_enclosed(camera, aim)),
+            Kind::FlatInterface(water) => water.look_enclosed(camera, aim),
+            Kind::GlassSlab(slab) => Some(slab.look_enclosed(camera, aim)),
+            Kind::CylinderCup(cup) => Some(cup.look_enclosed(camera, aim)),
             _ => None,
         }
     }
@@ -168,6 +193,13 @@ impl Scene {
                 };
                 claims.add("L", furnace_enclosed(*emission, *albedo, bounces));
             }
+            Kind::Flatland(flatland) => {
+                let [fluence, line] = flatland.caustic_enclosed(point.entry("x", &[1])?);
+                claims.add("fluence_caustic", fluence.total);
+                claims.add("E_caustic", line.total);
+                claims.add_rays("roots", "fluence", &fluence);
+                claims.add_rays("roots", "E", &line);
+            }
             _ => {
                 let x = vec3(
                     point.entry("x", &[0])?,
@@ -188,7 +220,11 @@ impl Scene {
     fn view_claims(&self, view: &dyn Source) -> Option<Vec<Claim>> {
         let aim = if view.has("aim") { "aim" } else { "first_hit" };
         let seen = self.look_enclosed(view.point("camera")?, view.point(aim)?)?;
-        let light = self.light_enclosed(seen.at)?;
+        let mut light = self.light_enclosed(seen.at)?;
+        if let Kind::GlassSlab(_) = self.kind {
+            // Views through a slab hold light without internal reflection.
+            light.classes.truncate(1);
+        }
         let mut claims = Claims(vec![]);
         // A view that shows nothing has the weight 0.
         let shown = |value: Certified| match seen.arrives {
@@ -234,6 +270,30 @@ impl Light {
     }
 }
 
+/// The slab covers the whole floor: there is no direct light.
+fn slab_light(slab: &GlassSlab, x: Point) -> Light {
+    let orders = slab.orders();
+    let classes: Vec<_> = (0..orders)
+        .map(|k| {
+            let class = format!("L{}DE", "SS".repeat(k as usize + 1));
+            (class, slab.caustic_enclosed(x, k))
+        })
+        .collect();
+    let tail = slab.orders_from_enclosed(x, orders);
+    let mut light = Light {
+        direct: Some(Certified::NONE),
+        classes,
+        further: vec![],
+    };
+    let mut all = light.caustic();
+    all.join(tail);
+    light.further = vec![
+        ("E_caustic_all_orders".into(), all),
+        (format!("E_tail_orders_ge_{orders}"), tail),
+    ];
+    light
+}
+
 /// The classes of 1 to `orders` mirror bounces.
 fn bounces(orders: u32, class: impl Fn(u32) -> Bundle) -> Vec<(String, Bundle)> {
     (1..=orders)
@@ -266,11 +326,15 @@ impl Claims {
         }
         for (class, bundle) in &light.classes {
             self.add(&format!("paths.{class}.E"), bundle.total);
-            for (i, (irradiance, lit)) in bundle.rays.iter().enumerate() {
-                let mut ray = Certified::NONE;
-                ray.add(*irradiance, *lit);
-                self.add(&format!("paths.{class}.roots.{i}.E"), ray);
-            }
+            self.add_rays(&format!("paths.{class}.roots"), "E", bundle);
+        }
+    }
+
+    fn add_rays(&mut self, place: &str, key: &str, bundle: &Bundle) {
+        for (i, (value, lit)) in bundle.rays.iter().enumerate() {
+            let mut ray = Certified::NONE;
+            ray.add(*value, *lit);
+            self.add(&format!("{place}.{i}.{key}"), ray);
         }
     }
 }
