@@ -168,5 +168,7 @@ tables! {
     flat_interface "flat-interface" 1e-12 206 37;
     glass_slab "glass-slab" 1e-12 144 60;
     cylinder_cup "cylinder-cup" 1e-10 370 158;
+    concave_sphere "concave-sphere" 1e-7 231 58;
+    convex_sphere "convex-sphere" 1e-12 107 18;
     stigmatic_refractors "stigmatic-refractors" 1e-12 72 24;
 }

@@ -24,6 +24,7 @@ pub mod radiometry;
 pub mod roots;
 pub mod scene;
 pub mod source;
+pub mod sphere_mirror;
 pub mod stigmatic_refractors;
 
 use crate::enclosure::Enclosure;

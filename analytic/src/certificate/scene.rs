@@ -13,6 +13,7 @@ use crate::certificate::planar_chains::{Corridor, Wedge};
 use crate::certificate::planar_mirror::PlanarMirror;
 use crate::certificate::radiometry::{Bundle, Point};
 use crate::certificate::source::Source;
+use crate::certificate::sphere_mirror::SphereMirror;
 use crate::certificate::stigmatic_refractors::StigmaticRefractor;
 use crate::certificate::{Certified, Lit};
 use crate::enclosure::Enclosure;
@@ -74,6 +75,7 @@ enum Kind {
     GlassSlab(GlassSlab),
     CylinderCup(CylinderCup),
     Flatland(Flatland),
+    SphereMirror(SphereMirror),
 }
 
 impl Scene {
@@ -91,6 +93,8 @@ impl Scene {
             "stigmatic-refractors" => Kind::StigmaticRefractor(StigmaticRefractor::read(p)?),
             "cylinder-cup" if p.has("x_line") => Kind::Flatland(Flatland::read(p)?),
             "cylinder-cup" => Kind::CylinderCup(CylinderCup::read(p)?),
+            "concave-sphere" => Kind::SphereMirror(SphereMirror::read(p, true)?),
+            "convex-sphere" => Kind::SphereMirror(SphereMirror::read(p, false)?),
             "flat-interface" => Kind::FlatInterface(FlatInterface::read(p)?),
             "glass-slab" => Kind::GlassSlab(GlassSlab::read(p)?),
             _ => return None,
@@ -142,6 +146,9 @@ impl Scene {
                 one(Some(water.direct_enclosed(x)), water.caustic_enclosed(x))
             }
             Kind::GlassSlab(slab) => slab_light(slab, x),
+            Kind::SphereMirror(mirror) => {
+                one(Some(mirror.direct_enclosed(x)), mirror.caustic_enclosed(x))
+            }
         })
     }
 
@@ -152,6 +159,7 @@ impl Scene {
             Kind::FlatInterface(water) => water.look_enclosed(camera, aim),
             Kind::GlassSlab(slab) => Some(slab.look_enclosed(camera, aim)),
             Kind::CylinderCup(cup) => Some(cup.look_enclosed(camera, aim)),
+            Kind::SphereMirror(mirror) => Some(mirror.look_enclosed(camera, aim)),
             _ => None,
         }
     }
