@@ -170,5 +170,7 @@ tables! {
     cylinder_cup "cylinder-cup" 1e-10 370 158;
     concave_sphere "concave-sphere" 1e-7 231 58;
     convex_sphere "convex-sphere" 1e-12 107 18;
+    glass_sphere "glass-sphere" 1e-7 78 36;
+    water_waves "water-waves" 1e-10 99 36;
     stigmatic_refractors "stigmatic-refractors" 1e-12 72 24;
 }

@@ -16,6 +16,7 @@ pub mod cylinder_cup;
 pub mod diffuse;
 pub mod flat_interface;
 pub mod glass_slab;
+pub mod glass_sphere;
 pub mod layers;
 pub mod paraboloid;
 pub mod planar_chains;
@@ -26,6 +27,7 @@ pub mod scene;
 pub mod source;
 pub mod sphere_mirror;
 pub mod stigmatic_refractors;
+pub mod water_waves;
 
 use crate::enclosure::Enclosure;
 use crate::scalar::Scalar;

@@ -8,6 +8,7 @@ use crate::certificate::cylinder_cup::{CylinderCup, Flatland};
 use crate::certificate::diffuse::{Floor, Sphere, furnace_enclosed};
 use crate::certificate::flat_interface::FlatInterface;
 use crate::certificate::glass_slab::GlassSlab;
+use crate::certificate::glass_sphere::GlassSphere;
 use crate::certificate::paraboloid::Paraboloid;
 use crate::certificate::planar_chains::{Corridor, Wedge};
 use crate::certificate::planar_mirror::PlanarMirror;
@@ -15,6 +16,7 @@ use crate::certificate::radiometry::{Bundle, Point};
 use crate::certificate::source::Source;
 use crate::certificate::sphere_mirror::SphereMirror;
 use crate::certificate::stigmatic_refractors::StigmaticRefractor;
+use crate::certificate::water_waves::WaterWaves;
 use crate::certificate::{Certified, Lit};
 use crate::enclosure::Enclosure;
 use crate::scalar::Scalar;
@@ -76,6 +78,8 @@ enum Kind {
     CylinderCup(CylinderCup),
     Flatland(Flatland),
     SphereMirror(SphereMirror),
+    GlassSphere(GlassSphere, Vec<u32>),
+    WaterWaves(WaterWaves),
 }
 
 impl Scene {
@@ -95,12 +99,25 @@ impl Scene {
             "cylinder-cup" => Kind::CylinderCup(CylinderCup::read(p)?),
             "concave-sphere" => Kind::SphereMirror(SphereMirror::read(p, true)?),
             "convex-sphere" => Kind::SphereMirror(SphereMirror::read(p, false)?),
+            "glass-sphere" => {
+                let sphere = GlassSphere::read(p)?;
+                Kind::GlassSphere(sphere, vec![sphere.usual_interactions()])
+            }
+            "water-waves" => Kind::WaterWaves(WaterWaves::read(p)?),
             "flat-interface" => Kind::FlatInterface(FlatInterface::read(p)?),
             "glass-slab" => Kind::GlassSlab(GlassSlab::read(p)?),
             _ => return None,
         };
         let albedo = p.number("albedo").unwrap_or(Enclosure::ZERO);
         Some(Scene { kind, albedo })
+    }
+
+    /// The same scene with these numbers of interactions in the listed sum, where classes are chosen so: glass spheres.
+    pub fn listing(mut self, numbers: Vec<u32>) -> Self {
+        if let Kind::GlassSphere(_, interactions) = &mut self.kind {
+            *interactions = numbers;
+        }
+        self
     }
 
     /// All light at a receiver point; its height is that of the receiver, whatever `x` says.
@@ -146,6 +163,18 @@ impl Scene {
                 one(Some(water.direct_enclosed(x)), water.caustic_enclosed(x))
             }
             Kind::GlassSlab(slab) => slab_light(slab, x),
+            Kind::GlassSphere(sphere, interactions) => Light {
+                direct: None,
+                classes: interactions
+                    .iter()
+                    .map(|&m| {
+                        let class = format!("L{}DE", "S".repeat(m as usize));
+                        (class, sphere.caustic_enclosed(x, m))
+                    })
+                    .collect(),
+                further: vec![],
+            },
+            Kind::WaterWaves(water) => one(None, water.caustic_enclosed(x)),
             Kind::SphereMirror(mirror) => {
                 one(Some(mirror.direct_enclosed(x)), mirror.caustic_enclosed(x))
             }
@@ -160,6 +189,7 @@ impl Scene {
             Kind::GlassSlab(slab) => Some(slab.look_enclosed(camera, aim)),
             Kind::CylinderCup(cup) => Some(cup.look_enclosed(camera, aim)),
             Kind::SphereMirror(mirror) => Some(mirror.look_enclosed(camera, aim)),
+            Kind::WaterWaves(water) => water.look_enclosed(camera, aim),
             _ => None,
         }
     }
