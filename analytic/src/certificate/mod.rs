@@ -88,6 +88,15 @@ impl Certified {
         self.undecided |= other.undecided;
     }
 
+    /// What holds wherever one of two holds.
+    pub fn either(self, other: Self) -> Self {
+        Certified {
+            value: self.value.hull(other.value),
+            roots: self.roots.min(other.roots),
+            undecided: self.undecided || other.undecided || self.roots != other.roots,
+        }
+    }
+
     /// The value times a factor.
     pub fn times(self, factor: Enclosure) -> Self {
         Certified {

@@ -22,6 +22,9 @@ use crate::enclosure::Enclosure;
 use crate::scalar::Scalar;
 use crate::vector::vec3;
 
+/// Parts of a view's receiver point along either axis.
+const PIECES: u32 = 4;
+
 /// A value with its name.
 #[derive(Clone, Debug)]
 pub struct Claim {
@@ -258,11 +261,7 @@ impl Scene {
     fn view_claims(&self, view: &dyn Source) -> Option<Vec<Claim>> {
         let aim = if view.has("aim") { "aim" } else { "first_hit" };
         let seen = self.look_enclosed(view.point("camera")?, view.point(aim)?)?;
-        let mut light = self.light_enclosed(seen.at)?;
-        if let Kind::GlassSlab(_) = self.kind {
-            // Views through a slab hold light without internal reflection.
-            light.classes.truncate(1);
-        }
+        let (direct, caustic) = self.light_over(seen.at)?;
         let mut claims = Claims(vec![]);
         // A view that shows nothing has the weight 0.
         let shown = |value: Certified| match seen.arrives {
@@ -274,8 +273,6 @@ impl Scene {
                 undecided: true,
             },
         };
-        let direct = light.direct.unwrap_or(Certified::NONE);
-        let caustic = light.caustic();
         let mut total = direct;
         total.join(caustic);
         let weighted = |e: Certified| shown(self.radiance(e).times(seen.weight));
@@ -289,6 +286,27 @@ impl Scene {
         claims.add("L_caustic_seen", weighted(caustic));
         claims.add("L", weighted(total));
         Some(claims.0)
+    }
+
+    /// Direct and listed light over a small box: piece by piece, so that the place of a ray and what depends on it are not
+    /// both taken from anywhere in the box.
+    fn light_over(&self, at: Point) -> Option<(Certified, Certified)> {
+        let mut sum: Option<(Certified, Certified)> = None;
+        for x in pieces(at.x) {
+            for y in pieces(at.y) {
+                let mut light = self.light_enclosed(vec3(x, y, at.z))?;
+                if let Kind::GlassSlab(_) = self.kind {
+                    // Views through a slab hold light without internal reflection.
+                    light.classes.truncate(1);
+                }
+                let here = (light.direct.unwrap_or(Certified::NONE), light.caustic());
+                sum = Some(match sum {
+                    None => here,
+                    Some((direct, caustic)) => (direct.either(here.0), caustic.either(here.1)),
+                });
+            }
+        }
+        sum
     }
 
     /// ρE/π.
@@ -306,6 +324,24 @@ impl Light {
         }
         sum
     }
+}
+
+/// An interval in [`PIECES`] parts.
+fn pieces(whole: Enclosure) -> Vec<Enclosure> {
+    let cut = |i: u32| match i {
+        0 => whole.low(),
+        PIECES => whole.high(),
+        _ => {
+            let share = f64::from(i) / f64::from(PIECES);
+            (whole.low() + share * (whole.high() - whole.low())).clamp(whole.low(), whole.high())
+        }
+    };
+    if !whole.is_finite() || whole.low() == whole.high() {
+        return vec![whole];
+    }
+    (0..PIECES)
+        .map(|i| Enclosure::new(cut(i), cut(i + 1)))
+        .collect()
 }
 
 /// The slab covers the whole floor: there is no direct light.
