@@ -22,7 +22,7 @@ use nephroid::verify::run::{Request, run};
 use nephroid::verify::suite::{Coverage, Subject};
 use nephroid::verify::verdicts::Outcome;
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::Kind;
+use nephroid_analytic::scene::{Kind, PlanarMirrorScene};
 
 #[derive(Parser)]
 struct Args {
@@ -203,7 +203,7 @@ fn fault_runs(seeds: impl Iterator<Item = u64>) -> u64 {
 fn subject_without_ones() -> Subject {
     let mut subjects = subjects(&["mirror-wall"]);
     let mut subject = subjects.remove(0);
-    if let Kind::PlanarMirror { light, mirror, .. } = &mut subject.entry.kind {
+    if let Kind::PlanarMirror(PlanarMirrorScene { light, mirror, .. }) = &mut subject.entry.kind {
         light.intensity = 3.7;
         mirror.reflectance = 0.7;
     }

@@ -3,18 +3,20 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    ArcWall, Camera, DirectionalLight, Entry, Floor, Kind, PointLight, RectangleMirror, Water,
+    self, ArcWall, Camera, DirectionalLight, Entry, Floor, Kind, PointLight, RectangleMirror, Slab,
+    Water,
 };
 use serde::Deserialize;
 
 use crate::error::Error;
 
 /// The built-in entries, in the order in which they are listed.
-const CATALOGUE: [(&str, &str); 4] = [
+const CATALOGUE: &[(&str, &str)] = &[
     ("floor", include_str!("../scenes/floor.toml")),
     ("mirror-wall", include_str!("../scenes/mirror-wall.toml")),
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
+    ("slab", include_str!("../scenes/slab.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -46,68 +48,59 @@ struct KindOnly {
     kind: Option<toml::Value>,
 }
 
-macro_rules! entry_file {
-    ($name:ident, $kind:ident { $($field:ident : $type:ty),* }) => {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct $name {
-            name: String,
-            title: String,
-            #[serde(rename = "kind")]
-            _kind: String,
-            camera: Camera,
-            $($field: $type),*
-        }
+/// A kind: the file that its entries are written in, and how it is read.
+macro_rules! kinds {
+    ($($name:literal => $kind:ident($data:ident { $($field:ident : $type:ty),* $(,)? })),* $(,)?) => {
+        /// What reads the entries of a kind.
+        type Reader = fn(&str) -> Result<Entry, toml::de::Error>;
 
-        impl From<$name> for Entry {
-            fn from(f: $name) -> Entry {
-                Entry { name: f.name, title: f.title, camera: f.camera, kind: Kind::$kind { $($field: f.$field),* } }
-            }
-        }
+        /// Every kind by the name that TOML files use.
+        const KINDS: &[(&str, Reader)] = &[
+            $(($name, |text| {
+                #[derive(Deserialize)]
+                #[serde(deny_unknown_fields)]
+                struct File {
+                    name: String,
+                    title: String,
+                    #[serde(rename = "kind")]
+                    _kind: String,
+                    camera: Camera,
+                    $($field: $type),*
+                }
+                let f: File = toml::from_str(text)?;
+                let kind = Kind::$kind(scene::$data { $($field: f.$field),* });
+                Ok(Entry { name: f.name, title: f.title, camera: f.camera, kind })
+            })),*
+        ];
     };
 }
 
-entry_file!(
-    DiffuseFile,
-    Diffuse {
-        light: PointLight,
-        floor: Floor
-    }
-);
-entry_file!(
-    PlanarMirrorFile,
-    PlanarMirror {
-        light: PointLight,
-        floor: Floor,
-        mirror: RectangleMirror
-    }
-);
-entry_file!(
-    CylinderCupFile,
-    CylinderCup {
-        light: DirectionalLight,
-        floor: Floor,
-        wall: ArcWall
-    }
-);
-entry_file!(
-    FlatInterfaceFile,
-    FlatInterface {
-        light: PointLight,
-        floor: Floor,
-        water: Water
-    }
-);
+kinds! {
+    "diffuse" => Diffuse(DiffuseScene { light: PointLight, floor: Floor }),
+    "planar-mirror" => PlanarMirror(PlanarMirrorScene {
+        light: PointLight, floor: Floor, mirror: RectangleMirror,
+    }),
+    "cylinder-cup" => CylinderCup(CylinderCupScene {
+        light: DirectionalLight, floor: Floor, wall: ArcWall,
+    }),
+    "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
+    "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+}
+
+/// The kinds, as an error message lists them.
+fn kinds() -> String {
+    let names: Vec<_> = KINDS.iter().map(|(name, _)| format!("{name:?}")).collect();
+    format!("one of {}", names.join(", "))
+}
 
 /// What each key of an entry may be: the help beside a missing key or a value of the wrong type. The exact bounds that
 /// depend on other keys come from [`Entry::validate`].
-const ALLOWED: [(&str, &str); 24] = [
+const ALLOWED: &[(&str, &str)] = &[
     (
         "name",
         "a string of 1 to 64 lower-case letters, digits and hyphens",
     ),
     ("title", "a string"),
-    ("kind", KINDS),
     (
         "camera",
         "a table with position, look_at, field_of_view_degrees, width and height",
@@ -129,6 +122,9 @@ const ALLOWED: [(&str, &str); 24] = [
         "a table with radius, height, half_arc_degrees and reflectance",
     ),
     ("water", "a table with surface_z and index"),
+    ("slab", "a table with bottom, top and index"),
+    ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
@@ -181,8 +177,6 @@ fn allowed(error: &toml::de::Error, line: &str) -> Option<&'static str> {
     }
 }
 
-const KINDS: &str = "one of \"diffuse\", \"planar-mirror\", \"cylinder-cup\", \"flat-interface\"";
-
 /// Reads and validates an entry.
 ///
 /// # Errors
@@ -197,19 +191,15 @@ pub fn from_toml(file: &str, text: &str) -> Result<Entry, Error> {
         found,
         allowed: allowed.to_owned(),
     };
-    const KINDS: &str =
-        "one of \"diffuse\", \"planar-mirror\", \"cylinder-cup\", \"flat-interface\"";
     let entry = match &kind {
-        Some(toml::Value::String(kind)) => match kind.as_str() {
-            "diffuse" => toml::from_str::<DiffuseFile>(text).map(Entry::from),
-            "planar-mirror" => toml::from_str::<PlanarMirrorFile>(text).map(Entry::from),
-            "cylinder-cup" => toml::from_str::<CylinderCupFile>(text).map(Entry::from),
-            "flat-interface" => toml::from_str::<FlatInterfaceFile>(text).map(Entry::from),
-            other => return Err(parameter("kind", format!("{other:?}"), KINDS)),
+        Some(toml::Value::String(kind)) => {
+            let reader = KINDS.iter().find(|(name, _)| name == kind);
+            let (_, read) =
+                reader.ok_or_else(|| parameter("kind", format!("{kind:?}"), &kinds()))?;
+            read(text).map_err(syntax)?
         }
-        .map_err(syntax)?,
-        Some(other) => return Err(parameter("kind", other.to_string(), KINDS)),
-        None => return Err(parameter("kind", "missing".to_owned(), KINDS)),
+        Some(other) => return Err(parameter("kind", other.to_string(), &kinds())),
+        None => return Err(parameter("kind", "missing".to_owned(), &kinds())),
     };
     entry
         .validate()

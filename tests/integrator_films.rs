@@ -8,7 +8,7 @@ use nephroid::integrators::{
     Fault, Integrator, Kernel, NAMES, Schedule, Settings, Treatment, all, by_name,
 };
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, Kind};
+use nephroid_analytic::scene::{CylinderCupScene, DiffuseScene, Entry, Kind};
 
 const SCENES: [&str; 4] = ["floor", "mirror-wall", "cup", "pool"];
 const CAUSTIC: [PathClass; 2] = [PathClass::LSDE, PathClass::LSDSE];
@@ -179,7 +179,7 @@ fn a_pixel_of_direct_light_has_the_closed_value() {
     let mut entry = load("floor", 1, 1);
     entry.camera.look_at = [0.4, 0.9, 0.0];
     entry.camera.field_of_view_degrees = 0.1;
-    let Kind::Diffuse { light, floor } = &entry.kind else {
+    let Kind::Diffuse(DiffuseScene { light, floor }) = &entry.kind else {
         panic!("floor is diffuse");
     };
     let d: Vec<f64> = (0..3)
@@ -258,7 +258,7 @@ fn independent_techniques_agree_on_the_cup_and_in_the_pool() {
 #[test]
 fn faults_do_what_they_say() {
     let entry = load("cup", 16, 16);
-    let Kind::CylinderCup { light, wall, .. } = &entry.kind else {
+    let Kind::CylinderCup(CylinderCupScene { light, wall, .. }) = &entry.kind else {
         panic!("cup is a cylinder cup");
     };
     let bandwidth = 0.5_f64;

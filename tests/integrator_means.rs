@@ -10,7 +10,7 @@ use nephroid::entry;
 use nephroid::film::Film;
 use nephroid::integrators::{Kernel, Settings, by_name};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, Kind};
+use nephroid_analytic::scene::{DiffuseScene, Entry, Kind, PlanarMirrorScene};
 
 type V = [f64; 3];
 
@@ -64,12 +64,12 @@ impl Plain {
     fn load(name: &str) -> Self {
         let entry = entry::load(name).unwrap();
         let (light, floor, mirror) = match &entry.kind {
-            Kind::Diffuse { light, floor } => (light, floor, None),
-            Kind::PlanarMirror {
+            Kind::Diffuse(DiffuseScene { light, floor }) => (light, floor, None),
+            Kind::PlanarMirror(PlanarMirrorScene {
                 light,
                 floor,
                 mirror,
-            } => {
+            }) => {
                 assert_eq!(
                     (mirror.normal, mirror.edge),
                     ([0.0, -1.0, 0.0], [1.0, 0.0, 0.0])

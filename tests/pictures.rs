@@ -2,9 +2,17 @@
 //! without what no radiance can stand for (the light itself, seen directly or by specular surfaces).
 
 use nephroid::entry;
+use nephroid::geometry::chains::Chains;
+use nephroid::geometry::compiled::{Visitor, visit};
+use nephroid::geometry::floor::Floor;
+use nephroid::geometry::light::Light;
+use nephroid::geometry::scene::{Overrides, Scene};
+use nephroid::geometry::specular::Specular;
 use nephroid::truth;
 use nephroid_analytic::camera::Film;
-use nephroid_analytic::scene::{Entry, Kind};
+use nephroid_analytic::scene::{
+    CylinderCupScene, DiffuseScene, Entry, FlatInterfaceScene, Kind, PlanarMirrorScene,
+};
 use nephroid_analytic::vector::{Vec3, vec3};
 
 /// A coarse image is the block mean of a fine one: pixels cut in different places must add up, within the error bounds.
@@ -95,37 +103,63 @@ fn no_light_is_in_a_frame_directly_or_by_a_specular_surface() {
         let eye = Vec3::from_f64(scene.camera.position);
         let mut seen = Vec::new();
         match &scene.kind {
-            Kind::Diffuse { light, .. } => seen.push(Vec3::from_f64(light.position)),
-            Kind::PlanarMirror { light, mirror, .. } => {
+            Kind::Diffuse(DiffuseScene { light, .. }) => seen.push(Vec3::from_f64(light.position)),
+            Kind::PlanarMirror(PlanarMirrorScene { light, mirror, .. }) => {
                 let y = Vec3::from_f64(light.position);
                 let n = Vec3::from_f64(mirror.normal).normalized();
                 let height = (y - Vec3::from_f64(mirror.center)).dot(n);
                 seen.extend([y, y - n * (2.0 * height)]);
             }
-            Kind::CylinderCup { light, .. } => {
+            Kind::CylinderCup(CylinderCupScene { light, .. }) => {
                 // The sun itself. By the wall it cannot be seen: that needs a ray that goes up after a reflection that
                 // keeps its slope, and every ray to the wall goes down from a pinhole above it.
                 let e = light.elevation_degrees.to_radians();
                 seen.push(eye + vec3(-libm::cos(e), 0.0, libm::sin(e)));
             }
-            Kind::FlatInterface { light, water, .. } => {
+            Kind::FlatInterface(FlatInterfaceScene { light, water, .. }) => {
                 let y = Vec3::from_f64(light.position);
                 seen.extend([y, vec3(y.x, y.y, 2.0 * water.surface_z - y.z)]);
             }
+            // Seen directly, with no specular surface in the frame.
+            _ => seen.push(visit(&scene, Overrides::default(), NothingInTheWay)),
         }
         for point in seen {
             assert!(!in_frame(&scene, point), "{name} {point:?}");
             checked += 1;
         }
     }
-    assert_eq!(checked, 6);
+    assert_eq!(checked, 6 + entry::names().count() - 4);
+}
+
+/// Checks that the camera sees the floor plane, or nothing, along every ray; gives a point in the direction of the light.
+struct NothingInTheWay;
+
+impl Visitor for NothingInTheWay {
+    type Output = Vec3<f64>;
+
+    fn scene<L: Light, S: Specular>(self, _: Scene<L, S>) -> Vec3<f64> {
+        panic!("kinds with surfaces in the frame have checks of their own")
+    }
+
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Vec3<f64> {
+        const N: usize = 200;
+        let (eye, (columns, rows)) = (scene.camera.position, scene.camera.size());
+        for k in 0..N * N {
+            let at = |n: usize, size: f64| size * n as f64 / (N - 1) as f64;
+            let d = scene.camera.direction(at(k % N, columns), at(k / N, rows));
+            let t = Floor::meet(eye, d).min(1e6);
+            assert!(!scene.surface.blocks(eye, d, t), "{d}");
+        }
+        let towards = eye + scene.light.towards(eye).0;
+        vec3(towards.x, towards.y, towards.z)
+    }
 }
 
 /// LDSSE would belong to the closure otherwise. Rays are continued in space until they meet the circle again.
 #[test]
 fn no_ray_of_the_cups_camera_meets_the_wall_twice() {
     let scene = entry::load("cup").unwrap();
-    let Kind::CylinderCup { wall, .. } = &scene.kind else {
+    let Kind::CylinderCup(CylinderCupScene { wall, .. }) = &scene.kind else {
         panic!("the cup is a cup");
     };
     let film = Film::new(&scene.camera);

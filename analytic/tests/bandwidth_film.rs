@@ -3,7 +3,10 @@
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Expectation, Kernel, PlanarSetting, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Camera, Entry, Floor, Kind, PointLight, RectangleMirror};
+use nephroid_analytic::scene::{
+    Camera, DiffuseScene, Entry, FlatInterfaceScene, Floor, Kind, PlanarMirrorScene, PointLight,
+    RectangleMirror,
+};
 use nephroid_analytic::vector::{Vec3, vec3};
 
 const PI: f64 = core::f64::consts::PI;
@@ -13,7 +16,7 @@ fn entry(size: u32) -> Entry {
     Entry {
         name: "test".into(),
         title: "test".into(),
-        kind: Kind::PlanarMirror {
+        kind: Kind::PlanarMirror(PlanarMirrorScene {
             light: PointLight {
                 position: [0.25, 0.1, 1.7],
                 intensity: 2.9,
@@ -31,7 +34,7 @@ fn entry(size: u32) -> Entry {
                 half_height: 0.4,
                 reflectance: 0.85,
             },
-        },
+        }),
         camera: Camera {
             position: [0.2, -2.6, 1.9],
             look_at: [0.0, 0.5, 0.3],
@@ -45,7 +48,7 @@ fn entry(size: u32) -> Entry {
 
 /// The floor point that the eye sees through film point (u, v) in [0, 1]², for (direct, mirrored): at most one is there.
 fn look(e: &Entry, u: f64, v: f64) -> [Option<Vec3<f64>>; 2] {
-    let Kind::PlanarMirror { floor, mirror, .. } = &e.kind else {
+    let Kind::PlanarMirror(PlanarMirrorScene { floor, mirror, .. }) = &e.kind else {
         unreachable!()
     };
     let p = Vec3::from_f64(e.camera.position);
@@ -207,23 +210,23 @@ fn a_small_bandwidth_image_is_the_closed_form() {
 #[test]
 fn a_floor_has_no_regularized_class_and_other_kinds_are_refused() {
     let mut e = entry(4);
-    let Kind::PlanarMirror { light, floor, .. } = e.kind.clone() else {
+    let Kind::PlanarMirror(PlanarMirrorScene { light, floor, .. }) = e.kind.clone() else {
         unreachable!()
     };
-    e.kind = Kind::Diffuse {
+    e.kind = Kind::Diffuse(DiffuseScene {
         light: light.clone(),
         floor: floor.clone(),
-    };
+    });
     let film = FilmExpectation::new(&e, Technique::Merge, Kernel::Disc, &[0.1]).unwrap();
     assert!(film.classes().is_empty() && film.row(0, 1e-6).is_empty());
-    e.kind = Kind::FlatInterface {
+    e.kind = Kind::FlatInterface(FlatInterfaceScene {
         light,
         floor,
         water: nephroid_analytic::scene::Water {
             surface_z: 0.5,
             index: 1.3,
         },
-    };
+    });
     let refused = FilmExpectation::new(&e, Technique::Camera, Kernel::Cone, &[0.1]);
     assert_eq!(refused.unwrap_err().key, "kind");
 }

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 
 use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::quadrature::{gauss_legendre, integrate, integrate_between_folds};
-use nephroid_analytic::scene::{ArcWall, Camera, DirectionalLight, Entry, Floor, Kind};
+use nephroid_analytic::scene::{
+    ArcWall, Camera, CylinderCupScene, DirectionalLight, Entry, Floor, Kind,
+};
 
 const RADIUS: f64 = 0.9;
 const HEIGHT: f64 = 0.37;
@@ -23,7 +25,7 @@ fn cup() -> Entry {
     Entry {
         name: "cup-under-test".to_owned(),
         title: String::new(),
-        kind: Kind::CylinderCup {
+        kind: Kind::CylinderCup(CylinderCupScene {
             light: DirectionalLight {
                 elevation_degrees: ELEVATION,
                 irradiance: IRRADIANCE,
@@ -39,7 +41,7 @@ fn cup() -> Entry {
                 half_arc_degrees: ARC,
                 reflectance: REFLECTANCE,
             },
-        },
+        }),
         camera: Camera {
             position: EYE,
             look_at: LOOK_AT,

@@ -4,13 +4,15 @@ use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::pixel::planar::{Eye, Light, PlanarView};
 use nephroid_analytic::pixel::polygon::Side;
 use nephroid_analytic::quadrature::gauss_legendre;
-use nephroid_analytic::scene::{Camera, Entry, Floor, Kind, PointLight, RectangleMirror};
+use nephroid_analytic::scene::{
+    Camera, Entry, Floor, Kind, PlanarMirrorScene, PointLight, RectangleMirror,
+};
 
 fn mirror_wall() -> Entry {
     Entry {
         name: "mirror-wall".to_owned(),
         title: String::new(),
-        kind: Kind::PlanarMirror {
+        kind: Kind::PlanarMirror(PlanarMirrorScene {
             light: PointLight {
                 position: [0.25, 0.0, 2.0],
                 intensity: 1.0,
@@ -28,7 +30,7 @@ fn mirror_wall() -> Entry {
                 half_height: 0.5,
                 reflectance: 1.0,
             },
-        },
+        }),
         camera: Camera {
             position: [0.0, -3.0, 2.0],
             look_at: [0.0, 0.6, 0.3],

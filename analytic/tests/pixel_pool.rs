@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::quadrature::gauss_legendre;
-use nephroid_analytic::scene::{Camera, Entry, Floor, Kind, PointLight, Water};
+use nephroid_analytic::scene::{Camera, Entry, FlatInterfaceScene, Floor, Kind, PointLight, Water};
 
 const LIGHT: [f64; 3] = [0.4, -1.1, 2.3];
 const INTENSITY: f64 = 3.7;
@@ -19,7 +19,7 @@ fn pool() -> Entry {
     Entry {
         name: "pool-under-test".to_owned(),
         title: String::new(),
-        kind: Kind::FlatInterface {
+        kind: Kind::FlatInterface(FlatInterfaceScene {
             light: PointLight {
                 position: LIGHT,
                 intensity: INTENSITY,
@@ -33,7 +33,7 @@ fn pool() -> Entry {
                 surface_z: SURFACE,
                 index: INDEX,
             },
-        },
+        }),
         camera: Camera {
             position: EYE,
             look_at: [0.0, 0.0, 0.3],

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use nephroid_analytic::bandwidth::{
     self, Expectation, Kernel, PlanarSetting, Technique, UnknownName,
 };
-use nephroid_analytic::kinds::entry::FloorTruth;
+use nephroid_analytic::entries::FloorTruth;
 use nephroid_analytic::scene::{InvalidParameter, Kind};
 use serde_json::{Value, json};
 
@@ -59,7 +59,14 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let entry = entry::load(&args.scene)?;
     let file = args.points.display().to_string();
     let text = std::fs::read_to_string(&args.points).map_err(|e| Error::read(&file, e))?;
-    let truth = FloorTruth::new(&entry);
+    let Some(truth) = FloorTruth::new(&entry) else {
+        return Err(Error::Parameter {
+            file: args.scene.clone(),
+            key: "kind".to_owned(),
+            found: entry.kind.name().to_owned(),
+            allowed: "a scene with a floor".to_owned(),
+        });
+    };
     let regularized = regularized(args, &entry)?;
     let mut answers = vec![];
     for (n, point) in read_points(&file, &text)?.into_iter().enumerate() {
@@ -78,7 +85,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                 radiance: truth.albedo() * irradiance / core::f64::consts::PI,
                 error_bound: moments.map_or(t.irradiance.error, |m| m.mean.error),
                 roots: t.irradiance.roots,
-                singularity: t.singularity,
+                singularity: t.singularity.map(|s| s.distance),
                 second_moment: moments.map(|m| m.second_moment.value),
             }
         }));
@@ -120,8 +127,8 @@ fn regularized(
     };
     bandwidth::check(technique, kernel, &args.bandwidth).map_err(option)?;
     let setting = match &entry.kind {
-        Kind::Diffuse { .. } => None,
-        Kind::PlanarMirror { .. } => PlanarSetting::of_entry(entry).map_err(option)?,
+        Kind::Diffuse(_) => None,
+        Kind::PlanarMirror(_) => PlanarSetting::of_entry(entry).map_err(option)?,
         _ => {
             return Err(option(InvalidParameter {
                 key: "technique".to_owned(),
@@ -202,10 +209,9 @@ fn check_on_floor(
     if f64::abs(z) <= 1e-9 && truth.is_on_floor(x, y) {
         return Ok(());
     }
-    let floor = entry.kind.floor();
     let range = |i: usize| {
-        let (c, w) = (floor.center[i], floor.half_width[i]);
-        format!("{} to {}", c - w, c + w)
+        let [low, high] = truth.range(i);
+        format!("{low} to {high}")
     };
     let help = format!(
         "allowed: points of the floor of `{}`: x from {}, y from {}, z = 0",

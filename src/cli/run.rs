@@ -62,6 +62,13 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         fault: None,
     };
     let integrator = by_name(&args.integrator, &settings)?;
+    integrator.supports(&entry).map_err(|reason| {
+        refused(
+            "integrator",
+            integrator.name(),
+            &format!("pt or lt on this scene: {reason}"),
+        )
+    })?;
     let plan = integrator.plan(&entry);
     let schedule = schedule(args, integrator.as_ref(), &plan)?;
     let mut film = Film::new(

@@ -6,12 +6,16 @@
 //! depend on the width of the vectors.
 
 pub mod arc;
+pub mod chains;
+pub mod compiled;
+pub mod dielectric;
 pub mod emission;
 pub mod floor;
 pub mod light;
 pub mod pinhole;
 pub mod rectangle;
 pub mod scene;
+pub mod slab;
 pub mod specular;
 pub mod turn;
 pub mod water;

@@ -2,15 +2,11 @@
 //! specular interaction on the way.
 
 use glam::DVec3;
-use nephroid_analytic::scene::{Entry, Kind};
 
-use super::arc::Arc;
 use super::floor::Floor;
-use super::light::{Directional, Light, Point};
+use super::light::Light;
 use super::pinhole::Pinhole;
-use super::rectangle::Rectangle;
-use super::specular::{Nothing, Specular};
-use super::water::Water;
+use super::specular::Specular;
 
 /// A scene with its light and specular surface known at compile time.
 #[derive(Clone, Copy, Debug)]
@@ -25,18 +21,6 @@ pub struct Scene<L, S> {
     pub camera: Pinhole,
 }
 
-/// A scene of any of the kinds.
-pub enum Compiled {
-    /// No specular surface.
-    Diffuse(Scene<Point, Nothing>),
-    /// Flat mirror.
-    PlanarMirror(Scene<Point, Rectangle>),
-    /// Vertical arc under a directional light.
-    CylinderCup(Scene<Directional, Arc>),
-    /// Flat water.
-    FlatInterface(Scene<Point, Water>),
-}
-
 /// Replacements of scene constants, for deliberately wrong integrators.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
@@ -44,51 +28,6 @@ pub struct Overrides {
     pub light_strength: Option<f64>,
     /// Reflectance of the mirror.
     pub reflectance: Option<f64>,
-}
-
-impl Compiled {
-    /// Compiles a validated entry.
-    pub fn new(entry: &Entry, overrides: Overrides) -> Self {
-        let floor = Floor::new(entry.kind.floor());
-        let camera = Pinhole::new(&entry.camera);
-        let point = |light: &nephroid_analytic::scene::PointLight| Point {
-            position: DVec3::from_array(light.position),
-            intensity: overrides.light_strength.unwrap_or(light.intensity),
-        };
-        let reflectance = |own: f64| overrides.reflectance.unwrap_or(own);
-        match &entry.kind {
-            Kind::Diffuse { light, .. } => Compiled::Diffuse(Scene {
-                light: point(light),
-                surface: Nothing,
-                floor,
-                camera,
-            }),
-            Kind::PlanarMirror { light, mirror, .. } => Compiled::PlanarMirror(Scene {
-                light: point(light),
-                surface: Rectangle::new(mirror, reflectance(mirror.reflectance)),
-                floor,
-                camera,
-            }),
-            Kind::CylinderCup { light, wall, .. } => {
-                let elevation = light.elevation_degrees.to_radians();
-                Compiled::CylinderCup(Scene {
-                    light: Directional {
-                        travel: DVec3::new(libm::cos(elevation), 0.0, -libm::sin(elevation)),
-                        irradiance: overrides.light_strength.unwrap_or(light.irradiance),
-                    },
-                    surface: Arc::new(wall, reflectance(wall.reflectance)),
-                    floor,
-                    camera,
-                })
-            }
-            Kind::FlatInterface { light, water, .. } => Compiled::FlatInterface(Scene {
-                light: point(light),
-                surface: Water::new(water),
-                floor,
-                camera,
-            }),
-        }
-    }
 }
 
 /// Where a ray reaches the floor.

@@ -11,13 +11,16 @@ use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
+use crate::geometry::chains::Chains;
+use crate::geometry::compiled::{Visitor, visit};
 use crate::geometry::emission::Emitter;
 use crate::geometry::light::Light;
-use crate::geometry::scene::{Compiled, Scene};
+use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{add, select};
+use super::chains::LightChains;
 use super::plan::{not_sampled, plan_of};
 use super::settings::{Defect, Settings};
 use super::{ClassPlan, Integrator, Plan, Prepared, Technique, Treatment};
@@ -48,7 +51,7 @@ impl Integrator for Lt {
 
     fn plan(&self, entry: &Entry) -> Plan {
         plan_of(entry, |class| {
-            if CLASSES.contains(&class) {
+            if class.eye.is_empty() {
                 ClassPlan {
                     class,
                     treatment: Treatment::Exact(Technique::LightTracing),
@@ -67,12 +70,24 @@ impl Integrator for Lt {
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
         let defect = Defect::new(self.settings.fault);
-        match Compiled::new(entry, defect.overrides()) {
-            Compiled::Diffuse(scene) => prepared(scene, defect),
-            Compiled::PlanarMirror(scene) => prepared(scene, defect),
-            Compiled::CylinderCup(scene) => prepared(scene, defect),
-            Compiled::FlatInterface(scene) => prepared(scene, defect),
-        }
+        visit(entry, defect.overrides(), Prepare { defect })
+    }
+}
+
+/// What is prepared once the kind of the scene is known.
+struct Prepare {
+    defect: Defect,
+}
+
+impl Visitor for Prepare {
+    type Output = Box<dyn Prepared>;
+
+    fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        prepared(scene, self.defect)
+    }
+
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        Box::new(LightChains::new(scene, self.defect))
     }
 }
 

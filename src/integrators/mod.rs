@@ -6,6 +6,7 @@
 
 pub mod accumulate;
 mod camera_paths;
+mod chains;
 pub mod kernel;
 mod lt;
 mod photon_grid;
@@ -32,6 +33,7 @@ use nephroid_analytic::scene::Entry;
 
 use crate::error::Error;
 use crate::film::Film;
+use crate::geometry::compiled::Compiled;
 
 /// What an integrator does about one path class.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,7 +94,15 @@ pub trait Integrator: Send + Sync {
         Schedule::Fixed(bandwidth)
     }
 
-    /// Compiles a validated scene into what this method must do on it and no more.
+    /// Whether the method can be prepared for the scene.
+    ///
+    /// # Errors
+    /// Why not, for a person.
+    fn supports(&self, _entry: &Entry) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Compiles a validated scene that the method supports into what it must do on it and no more.
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared>;
 }
 
@@ -101,6 +111,26 @@ pub trait Prepared: Send + Sync {
     /// Adds the contributions of `paths` paths to the film. The same (seed, iteration, paths, bandwidth) gives the same
     /// bits. `bandwidth` is an angle [rad] or a radius [m], ignored by methods that regularize nothing.
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
+}
+
+/// Whether the regularizing methods know the kind of the scene.
+fn regularizes(entry: &Entry) -> Result<(), String> {
+    if Compiled::knows(entry) {
+        return Ok(());
+    }
+    let kind = entry.kind.name();
+    Err(format!(
+        "no exact expectation at finite bandwidth for the kind {kind}"
+    ))
+}
+
+/// A method on a scene that it does not support: it samples nothing.
+struct Unsupported;
+
+impl Prepared for Unsupported {
+    fn iterate(&self, _: u64, _: u32, paths: u64, _: f64, film: &mut Film) {
+        film.paths += paths;
+    }
 }
 
 /// Every method, with default settings.

@@ -13,9 +13,10 @@ use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
+use crate::geometry::compiled::Compiled;
 use crate::geometry::emission::Emitter;
 use crate::geometry::light::Light;
-use crate::geometry::scene::{Compiled, Scene};
+use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
@@ -24,7 +25,7 @@ use super::kernel::{Kernel, RadiusKernel};
 use super::photon_grid::{PhotonGrid, Photons};
 use super::plan::{next_event_plan, plan_of};
 use super::settings::{Defect, Settings};
-use super::{ClassPlan, Plan, Prepared, Technique, Treatment};
+use super::{ClassPlan, Plan, Prepared, Technique, Treatment, Unsupported};
 
 /// Photons that a camera path meets in the nine cells around its vertex, about.
 const MET: f64 = 128.0;
@@ -54,10 +55,11 @@ pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
 pub(super) fn prepare(entry: &Entry, settings: &Settings) -> Box<dyn Prepared> {
     let defect = Defect::new(settings.fault);
     match Compiled::new(entry, defect.overrides()) {
-        Compiled::Diffuse(scene) => prepared(scene, settings, defect),
-        Compiled::PlanarMirror(scene) => prepared(scene, settings, defect),
-        Compiled::CylinderCup(scene) => prepared(scene, settings, defect),
-        Compiled::FlatInterface(scene) => prepared(scene, settings, defect),
+        Some(Compiled::Diffuse(scene)) => prepared(scene, settings, defect),
+        Some(Compiled::PlanarMirror(scene)) => prepared(scene, settings, defect),
+        Some(Compiled::CylinderCup(scene)) => prepared(scene, settings, defect),
+        Some(Compiled::FlatInterface(scene)) => prepared(scene, settings, defect),
+        None => Box::new(Unsupported),
     }
 }
 

@@ -4,7 +4,7 @@ use nephroid_analytic::scene::Entry;
 
 use super::photon_mapping::{kernel_of, merging_plan, prepare};
 use super::settings::Settings;
-use super::{Integrator, Plan, Prepared};
+use super::{Integrator, Plan, Prepared, regularizes};
 
 /// Photon mapping.
 pub struct Pm {
@@ -29,6 +29,10 @@ impl Integrator for Pm {
 
     fn plan(&self, entry: &Entry) -> Plan {
         merging_plan(entry, kernel_of(&self.settings))
+    }
+
+    fn supports(&self, entry: &Entry) -> Result<(), String> {
+        regularizes(entry)
     }
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {

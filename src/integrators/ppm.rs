@@ -7,7 +7,7 @@ use nephroid_analytic::scene::Entry;
 use super::photon_mapping::{kernel_of, merging_plan, prepare};
 use super::schedule::{DEFAULT_REDUCTION, Schedule};
 use super::settings::Settings;
-use super::{Integrator, Plan, Prepared};
+use super::{Integrator, Plan, Prepared, regularizes};
 
 /// Progressive photon mapping.
 pub struct Ppm {
@@ -39,6 +39,10 @@ impl Integrator for Ppm {
             first: bandwidth,
             reduction: DEFAULT_REDUCTION,
         }
+    }
+
+    fn supports(&self, entry: &Entry) -> Result<(), String> {
+        regularizes(entry)
     }
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {

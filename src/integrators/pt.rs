@@ -7,12 +7,15 @@ use multiversion::multiversion;
 use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
+use crate::geometry::chains::Chains;
+use crate::geometry::compiled::{Visitor, visit};
 use crate::geometry::light::Light;
-use crate::geometry::scene::{Compiled, Scene};
+use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
 use crate::stream::{BLOCK, Lanes, Stream, zeros};
 
 use super::camera_paths::{CameraPaths, DIRECT};
+use super::chains::DirectLight;
 use super::plan::{next_event_plan, not_sampled, plan_of};
 use super::settings::{Defect, Settings};
 use super::{Integrator, Plan, Prepared};
@@ -51,12 +54,27 @@ impl Integrator for Pt {
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
         let defect = Defect::new(self.settings.fault);
-        match Compiled::new(entry, defect.overrides()) {
-            Compiled::Diffuse(scene) => Box::new(PreparedPt { scene, defect }),
-            Compiled::PlanarMirror(scene) => Box::new(PreparedPt { scene, defect }),
-            Compiled::CylinderCup(scene) => Box::new(PreparedPt { scene, defect }),
-            Compiled::FlatInterface(scene) => Box::new(PreparedPt { scene, defect }),
-        }
+        visit(entry, defect.overrides(), Prepare { defect })
+    }
+}
+
+/// What is prepared once the kind of the scene is known.
+struct Prepare {
+    defect: Defect,
+}
+
+impl Visitor for Prepare {
+    type Output = Box<dyn Prepared>;
+
+    fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        Box::new(PreparedPt {
+            scene,
+            defect: self.defect,
+        })
+    }
+
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        Box::new(DirectLight::new(scene, self.defect))
     }
 }
 

@@ -13,8 +13,9 @@ use multiversion::multiversion;
 use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
+use crate::geometry::compiled::Compiled;
 use crate::geometry::light::Light;
-use crate::geometry::scene::{Compiled, Scene, unit};
+use crate::geometry::scene::{Scene, unit};
 use crate::geometry::specular::Specular;
 use crate::geometry::turn::sin_cos_of_turns;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
@@ -23,7 +24,9 @@ use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
 use super::kernel::{AngleKernel, Kernel};
 use super::plan::{next_event_plan, plan_of};
 use super::settings::{Defect, Settings};
-use super::{ClassPlan, Integrator, Plan, Prepared, Technique, Treatment};
+use super::{
+    ClassPlan, Integrator, Plan, Prepared, Technique, Treatment, Unsupported, regularizes,
+};
 
 /// Path tracing with regularized connections.
 pub struct PtReg {
@@ -64,6 +67,10 @@ impl Integrator for PtReg {
         })
     }
 
+    fn supports(&self, entry: &Entry) -> Result<(), String> {
+        regularizes(entry)
+    }
+
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
         let defect = Defect::new(self.settings.fault);
         let (kernel, settings) = (self.kernel, self.settings);
@@ -78,10 +85,11 @@ impl Integrator for PtReg {
             };
         }
         match Compiled::new(entry, defect.overrides()) {
-            Compiled::Diffuse(scene) => prepared!(scene),
-            Compiled::PlanarMirror(scene) => prepared!(scene),
-            Compiled::CylinderCup(scene) => prepared!(scene),
-            Compiled::FlatInterface(scene) => prepared!(scene),
+            Some(Compiled::Diffuse(scene)) => prepared!(scene),
+            Some(Compiled::PlanarMirror(scene)) => prepared!(scene),
+            Some(Compiled::CylinderCup(scene)) => prepared!(scene),
+            Some(Compiled::FlatInterface(scene)) => prepared!(scene),
+            None => Box::new(Unsupported),
         }
     }
 }

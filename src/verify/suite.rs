@@ -74,7 +74,7 @@ pub fn select(
     for (s, subject) in scenes.iter().enumerate() {
         for (i, integrator) in integrators.iter().enumerate() {
             let plan = integrator.plan(&subject.entry);
-            match without_truth(&subject.entry, &plan) {
+            match without_truth(&subject.entry, integrator.as_ref(), &plan) {
                 Some(reason) => not_run.push((s, i, reason)),
                 None => pairs.push(Pair {
                     scene: s,
@@ -105,10 +105,13 @@ pub fn select(
 }
 
 /// Why a plan cannot be judged on an entry.
-fn without_truth(entry: &Entry, plan: &Plan) -> Option<String> {
+fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Option<String> {
+    if let Err(reason) = integrator.supports(entry) {
+        return Some(reason);
+    }
     let unknown = |t: Treatment| match t {
         Treatment::Regularized(technique) => {
-            mollified(technique).is_none() || !matches!(entry.kind, Kind::PlanarMirror { .. })
+            mollified(technique).is_none() || !matches!(entry.kind, Kind::PlanarMirror(_))
         }
         _ => false,
     };

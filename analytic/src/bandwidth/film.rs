@@ -20,7 +20,7 @@ use crate::camera::Film;
 use crate::class::PathClass;
 use crate::pixel::planar::{Eye, Light, PlanarView};
 use crate::pixel::polygon::{ConvexSet, HalfPlane, Polygon};
-use crate::scene::{Entry, InvalidParameter, Kind};
+use crate::scene::{Entry, InvalidParameter, Kind, PlanarMirrorScene};
 use crate::vector::Vec3;
 
 /// Rounds of splits at most, per pixel or strip.
@@ -76,7 +76,9 @@ impl FilmExpectation {
             });
         };
         let mut layers = Vec::new();
-        if let (Some(setting), Kind::PlanarMirror { floor, mirror, .. }) = (&setting, &entry.kind) {
+        if let (Some(setting), Kind::PlanarMirror(PlanarMirrorScene { floor, mirror, .. })) =
+            (&setting, &entry.kind)
+        {
             let brightness = floor.albedo / core::f64::consts::PI;
             let eyes = [
                 (PathClass::LSDE, Eye::Direct, 1.0),

@@ -1,6 +1,6 @@
 //! A plane mirror, a point light and a receiver plane, in any pose.
 
-use crate::scene::{Entry, InvalidParameter, Kind, RectangleMirror};
+use crate::scene::{Entry, InvalidParameter, Kind, PlanarMirrorScene, RectangleMirror};
 use crate::vector::{Vec3, vec3};
 
 /// The points p with `normal`·p ≤ `offset`.
@@ -122,11 +122,11 @@ impl PlanarSetting {
     /// What [`Entry::validate`] finds.
     pub fn of_entry(entry: &Entry) -> Result<Option<Self>, InvalidParameter> {
         entry.validate()?;
-        let Kind::PlanarMirror {
+        let Kind::PlanarMirror(PlanarMirrorScene {
             light,
             floor,
             mirror,
-        } = &entry.kind
+        }) = &entry.kind
         else {
             return Ok(None);
         };

@@ -6,7 +6,6 @@
 pub mod conic_mirrors;
 pub mod cylinder_cup;
 pub mod diffuse;
-pub mod entry;
 pub mod flat_interface;
 pub mod glass_slab;
 pub mod glass_sphere;

@@ -17,6 +17,8 @@ pub mod rule;
 
 use crate::camera::Bounded;
 use crate::class::PathClass;
+use crate::entries;
+use crate::flux::FluxImage;
 use crate::scene::{Entry, InvalidParameter};
 
 use cup::CupImage;
@@ -36,6 +38,13 @@ enum Image {
     Planar(PlanarImage),
     Cup(CupImage),
     Pool(PoolImage),
+    Flux(FluxImage),
+}
+
+/// The image of a floor that is seen directly, by conservation of flux.
+fn flux_image(entry: &Entry) -> Option<FluxImage> {
+    let layers = entries::form(&entry.kind).bundles()?;
+    Some(FluxImage::new(&entry.camera, entry.kind.floor()?, layers))
 }
 
 impl PixelTruth {
@@ -48,7 +57,8 @@ impl PixelTruth {
         let image = PlanarImage::new(entry)
             .map(Image::Planar)
             .or_else(|| CupImage::new(entry).map(Image::Cup))
-            .or_else(|| PoolImage::new(entry).map(Image::Pool));
+            .or_else(|| PoolImage::new(entry).map(Image::Pool))
+            .or_else(|| flux_image(entry).map(Image::Flux));
         let Some(image) = image else {
             return Err(InvalidParameter {
                 key: "kind".to_owned(),
@@ -77,6 +87,7 @@ impl PixelTruth {
             Image::Planar(image) => image.row(j, tolerance, &mut row),
             Image::Cup(image) => image.row(j, tolerance, &mut row),
             Image::Pool(image) => image.row(j, tolerance, &mut row),
+            Image::Flux(image) => image.row(j, tolerance, &mut row),
         }
         row
     }

@@ -17,7 +17,9 @@
 
 use crate::camera::{Bounded, Film};
 use crate::pixel::polygon::{ConvexSet, HalfPlane, Ladder, Polygon, Side};
-use crate::scene::{Entry, Floor, Kind, PointLight, RectangleMirror};
+use crate::scene::{
+    DiffuseScene, Entry, Floor, Kind, PlanarMirrorScene, PointLight, RectangleMirror,
+};
 use crate::vector::{Vec3, vec3};
 
 /// How the eye sees the floor.
@@ -186,12 +188,14 @@ impl PlanarView {
     pub fn new(entry: &Entry) -> Option<Self> {
         let film = Film::new(&entry.camera);
         match &entry.kind {
-            Kind::Diffuse { light, floor } => Some(Self::build(&film, floor, light, None)),
-            Kind::PlanarMirror {
+            Kind::Diffuse(DiffuseScene { light, floor }) => {
+                Some(Self::build(&film, floor, light, None))
+            }
+            Kind::PlanarMirror(PlanarMirrorScene {
                 light,
                 floor,
                 mirror,
-            } => Some(Self::build(&film, floor, light, Some(mirror))),
+            }) => Some(Self::build(&film, floor, light, Some(mirror))),
             _ => None,
         }
     }

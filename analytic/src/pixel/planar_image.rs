@@ -2,7 +2,7 @@
 
 use crate::camera::Bounded;
 use crate::pixel::planar::{Eye, Light, PlanarView};
-use crate::scene::{Entry, Kind};
+use crate::scene::{DiffuseScene, Entry, Kind, PlanarMirrorScene};
 use crate::vector::Vec3;
 
 /// One layer: where it is, and the (virtual) light it sees.
@@ -33,11 +33,11 @@ impl PlanarImage {
             weight,
         };
         let layers = match &entry.kind {
-            Kind::PlanarMirror {
+            Kind::PlanarMirror(PlanarMirrorScene {
                 light,
                 floor,
                 mirror,
-            } => {
+            }) => {
                 let source = Vec3::from_f64(light.position);
                 let normal = Vec3::from_f64(mirror.normal).normalized();
                 let height = (source - Vec3::from_f64(mirror.center)).dot(normal);
@@ -51,7 +51,7 @@ impl PlanarImage {
                     layer(Eye::Mirror, Light::Mirror, image, once * r * r),
                 ]
             }
-            Kind::Diffuse { light, floor } => vec![layer(
+            Kind::Diffuse(DiffuseScene { light, floor }) => vec![layer(
                 Eye::Direct,
                 Light::Direct,
                 Vec3::from_f64(light.position),

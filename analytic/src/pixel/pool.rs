@@ -19,7 +19,7 @@ use crate::pixel::floor_polygon::{Edge, FloorPolygon, Projection, clip};
 use crate::pixel::line::Line;
 use crate::pixel::planar::{Rays, floor_rectangle};
 use crate::pixel::polygon::{ConvexSet, HalfPlane, Ladder, Polygon};
-use crate::scene::{Entry, Floor, Kind};
+use crate::scene::{Entry, FlatInterfaceScene, Floor, Kind};
 use crate::vector::{Vec3, vec3};
 
 /// The pool as its camera sees it.
@@ -54,11 +54,11 @@ struct WaterSlice {
 impl PoolImage {
     /// Prepares a validated entry; `None` for another kind.
     pub fn new(entry: &Entry) -> Option<Self> {
-        let Kind::FlatInterface {
+        let Kind::FlatInterface(FlatInterfaceScene {
             light,
             floor,
             water,
-        } = &entry.kind
+        }) = &entry.kind
         else {
             return None;
         };

@@ -18,7 +18,7 @@ use crate::pixel::floor_polygon::{Edge, FloorPolygon, Projection};
 use crate::pixel::line::Line;
 use crate::pixel::planar::{Rays, floor_rectangle};
 use crate::pixel::polygon::{ConvexSet, HalfPlane, Polygon, Side};
-use crate::scene::{Entry, Floor, Kind};
+use crate::scene::{CylinderCupScene, Entry, Floor, Kind};
 
 /// The cup as its camera sees it.
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ pub struct CupImage {
 impl CupImage {
     /// Prepares a validated entry; `None` for another kind.
     pub fn new(entry: &Entry) -> Option<Self> {
-        let Kind::CylinderCup { light, floor, wall } = &entry.kind else {
+        let Kind::CylinderCup(CylinderCupScene { light, floor, wall }) = &entry.kind else {
             return None;
         };
         let film = Film::new(&entry.camera);

@@ -1,20 +1,26 @@
 //! The ranges in which the closed forms hold, checked before anything is computed.
 
-use libm::{acos, cos, hypot, sqrt, tan};
+use libm::{hypot, sqrt};
 
 use crate::scene::{
-    ArcWall, Camera, DirectionalLight, Entry, Floor, InvalidParameter, Kind, PointLight,
+    Camera, DirectionalLight, Entry, Floor, InvalidParameter, PointLight, RectangleMirror,
+    VerticalLight, Water,
 };
-use crate::scene::{RectangleMirror, Water};
 
-type Checked = Result<(), InvalidParameter>;
+/// Nothing, or the first parameter that is out of range.
+pub(super) type Checked = Result<(), InvalidParameter>;
 
 /// Lengths and strengths beyond this are refused: they overflow when squared a few times.
-const LARGEST: f64 = 1e9;
+pub(super) const LARGEST: f64 = 1e9;
 /// Lengths and strengths below this are refused for the same reason.
-const SMALLEST: f64 = 1e-9;
+pub(super) const SMALLEST: f64 = 1e-9;
 
-fn invalid(key: &str, found: impl core::fmt::Display, allowed: &str) -> InvalidParameter {
+/// The error for a key.
+pub(super) fn invalid(
+    key: &str,
+    found: impl core::fmt::Display,
+    allowed: &str,
+) -> InvalidParameter {
     InvalidParameter {
         key: key.to_owned(),
         found: found.to_string(),
@@ -22,7 +28,8 @@ fn invalid(key: &str, found: impl core::fmt::Display, allowed: &str) -> InvalidP
     }
 }
 
-fn within(key: &str, value: f64, low: f64, high: f64) -> Checked {
+/// `value` in [low, high].
+pub(super) fn within(key: &str, value: f64, low: f64, high: f64) -> Checked {
     if value >= low && value <= high {
         Ok(())
     } else {
@@ -34,7 +41,8 @@ fn within(key: &str, value: f64, low: f64, high: f64) -> Checked {
     }
 }
 
-fn above(key: &str, value: f64, low: f64, high: f64) -> Checked {
+/// `value` in (low, high].
+pub(super) fn above(key: &str, value: f64, low: f64, high: f64) -> Checked {
     if value > low && value <= high {
         Ok(())
     } else {
@@ -46,16 +54,19 @@ fn above(key: &str, value: f64, low: f64, high: f64) -> Checked {
     }
 }
 
-fn positive(key: &str, value: f64) -> Checked {
+/// A length or strength that does not overflow when squared a few times.
+pub(super) fn positive(key: &str, value: f64) -> Checked {
     within(key, value, SMALLEST, LARGEST)
 }
 
-fn coordinates(key: &str, v: &[f64]) -> Checked {
+/// Coordinates of a point [m].
+pub(super) fn coordinates(key: &str, v: &[f64]) -> Checked {
     v.iter()
         .try_for_each(|&c| within(key, c, -LARGEST, LARGEST))
 }
 
-fn direction(key: &str, v: &[f64; 3]) -> Checked {
+/// A direction of any length.
+pub(super) fn direction(key: &str, v: &[f64; 3]) -> Checked {
     coordinates(key, v)?;
     let length = hypot(hypot(v[0], v[1]), v[2]);
     if length >= SMALLEST {
@@ -89,41 +100,15 @@ impl Entry {
             ));
         }
         self.camera.validate()?;
-        self.kind.floor().validate()?;
-        match &self.kind {
-            Kind::Diffuse { light, .. } => light.validate(0.0)?,
-            Kind::PlanarMirror { light, mirror, .. } => {
-                light.validate(0.0)?;
-                mirror.validate()?;
-                mirror.check_in_front("light.position", &light.position)?;
-                mirror.check_in_front("camera.position", &self.camera.position)?;
-            }
-            Kind::CylinderCup { light, wall, .. } => {
-                light.validate()?;
-                wall.validate(light)?;
-                wall.check_camera(&self.camera)?;
-            }
-            Kind::FlatInterface { light, water, .. } => {
-                water.validate()?;
-                light.validate(water.surface_z)?;
-                above(
-                    "camera.position",
-                    self.camera.position[2],
-                    water.surface_z,
-                    LARGEST,
-                )
-                .map_err(|e| InvalidParameter {
-                    allowed: format!("a camera above the water: z {}", e.allowed),
-                    ..e
-                })?;
-            }
+        if let Some(floor) = self.kind.floor() {
+            floor.validate()?;
         }
-        Ok(())
+        self.kind.family().validate(&self.camera)
     }
 }
 
 impl PointLight {
-    fn validate(&self, floor_z: f64) -> Checked {
+    pub(super) fn validate(&self, floor_z: f64) -> Checked {
         coordinates("light.position", &self.position)?;
         if !(self.position[2] > floor_z) {
             return Err(invalid(
@@ -137,14 +122,20 @@ impl PointLight {
 }
 
 impl DirectionalLight {
-    fn validate(&self) -> Checked {
+    pub(super) fn validate(&self) -> Checked {
         within("light.elevation_degrees", self.elevation_degrees, 1.0, 85.0)?;
         positive("light.irradiance", self.irradiance)
     }
 }
 
+impl VerticalLight {
+    pub(super) fn validate(&self) -> Checked {
+        positive("light.irradiance", self.irradiance)
+    }
+}
+
 impl Floor {
-    fn validate(&self) -> Checked {
+    pub(super) fn validate(&self) -> Checked {
         coordinates("floor.center", &self.center)?;
         self.half_width
             .iter()
@@ -154,7 +145,7 @@ impl Floor {
 }
 
 impl RectangleMirror {
-    fn validate(&self) -> Checked {
+    pub(super) fn validate(&self) -> Checked {
         coordinates("mirror.center", &self.center)?;
         direction("mirror.normal", &self.normal)?;
         direction("mirror.edge", &self.edge)?;
@@ -185,7 +176,7 @@ impl RectangleMirror {
         above("mirror.reflectance", self.reflectance, 0.0, 1.0)
     }
 
-    fn check_in_front(&self, key: &str, point: &[f64; 3]) -> Checked {
+    pub(super) fn check_in_front(&self, key: &str, point: &[f64; 3]) -> Checked {
         let side: f64 = (0..3)
             .map(|i| (point[i] - self.center[i]) * self.normal[i])
             .sum();
@@ -201,84 +192,15 @@ impl RectangleMirror {
     }
 }
 
-impl ArcWall {
-    fn validate(&self, light: &DirectionalLight) -> Checked {
-        positive("wall.radius", self.radius)?;
-        positive("wall.height", self.height)?;
-        above("wall.half_arc_degrees", self.half_arc_degrees, 0.0, 60.0)?;
-        above("wall.reflectance", self.reflectance, 0.0, 1.0)?;
-        let highest = self.radius * tan(light.elevation_degrees.to_radians());
-        if self.height <= highest {
-            return Ok(());
-        }
-        Err(invalid(
-            "wall.height",
-            self.height,
-            &format!(
-                "at most {highest} (radius × tan elevation), so that light meets the wall once"
-            ),
-        ))
-    }
-
-    /// Sufficient condition that no camera ray meets the wall twice, and that the wall hides no part of its own inner
-    /// side: the camera is outside the circle on the open side, and the ray reflected anywhere on the wall reaches the
-    /// floor before it comes back to the circle.
-    fn check_camera(&self, camera: &Camera) -> Checked {
-        let [cx, cy, cz] = camera.position;
-        let half_arc = self.half_arc_degrees.to_radians();
-        let refuse = |why: &str| {
-            Err(invalid(
-                "camera.position",
-                format!("{:?}", camera.position),
-                why,
-            ))
-        };
-        if !(cx < self.radius * cos(half_arc)) || !(hypot(cx, cy) > self.radius) {
-            return refuse(
-                "a point outside the wall's circle, with x less than radius × cos(half arc)",
-            );
-        }
-        if !(cz > self.height) {
-            return refuse("a point higher than the wall");
-        }
-        // A ray that meets the wall at angle φ and height z has slope (cz - z)/s₁ and reaches the floor after a
-        // horizontal length s₂ = z s₁/(cz - z); the chord is 2a cos i. The worst case is the upper rim, z = height.
-        let steps = 2048;
-        for k in 0..=steps {
-            let phi = half_arc * (2.0 * f64::from(k) / f64::from(steps) - 1.0);
-            let (nx, ny) = (cos(phi), libm::sin(phi));
-            let (dx, dy) = (self.radius * nx - cx, self.radius * ny - cy);
-            let s1 = hypot(dx, dy);
-            let cos_i = (dx * nx + dy * ny) / s1;
-            if !(cos_i > 0.0) {
-                return refuse("a point from which the whole inner side of the wall is visible");
-            }
-            let s2 = self.height * s1 / (cz - self.height);
-            let chord = 2.0 * self.radius * cos_i;
-            // Where the chord ends: beyond the arc there is no wall to meet.
-            let incidence = acos(cos_i.min(1.0));
-            let turned = if dx * ny - dy * nx > 0.0 { -1.0 } else { 1.0 };
-            let end = phi + turned * (core::f64::consts::PI - 2.0 * incidence);
-            let end = libm::atan2(libm::sin(end), cos(end));
-            if s2 >= chord && end.abs() <= half_arc * (1.0 + 1e-9) {
-                return refuse(
-                    "a point of which no ray meets the wall twice (LDSSE would belong to the closure)",
-                );
-            }
-        }
-        Ok(())
-    }
-}
-
 impl Water {
-    fn validate(&self) -> Checked {
+    pub(super) fn validate(&self) -> Checked {
         positive("water.surface_z", self.surface_z)?;
         above("water.index", self.index, 1.0, 10.0)
     }
 }
 
 impl Camera {
-    fn validate(&self) -> Checked {
+    pub(super) fn validate(&self) -> Checked {
         coordinates("camera.position", &self.position)?;
         coordinates("camera.look_at", &self.look_at)?;
         direction("camera.up", &self.up)?;

@@ -1,0 +1,105 @@
+//! Truth of catalogue entries: the closed form of a kind, made ready for an entry's parameters.
+//!
+//! One file per kind. [`FloorTruth`] answers at floor points, per path class that is seen directly there: `LDE` and
+//! `L S+ D E`. (The water of a `flat-interface` entry is entered before the floor is seen; its floor carries `LSDE`
+//! alone.) For images, a form also tells the light of each class as bundles of rays; see [`crate::flux`].
+
+mod cylinder_cup;
+mod diffuse;
+mod flat_interface;
+mod glass_slab;
+mod planar_mirror;
+
+use core::fmt::Debug;
+use std::sync::Arc;
+
+use crate::class::PathClass;
+use crate::flux::Bundle;
+use crate::kinds::Estimate;
+use crate::kinds::singularity::Singularity;
+use crate::scene::{Entry, Floor, Kind};
+
+/// The light of one path class at a floor point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointTruth {
+    /// The class.
+    pub class: PathClass,
+    /// Irradiance of the floor, with error bound and number of roots [W/m²].
+    pub irradiance: Estimate<f64>,
+    /// The nearest singularity of the class's caustic; `None` where there is none.
+    pub singularity: Option<Singularity<f64>>,
+}
+
+impl PointTruth {
+    /// Light of a class without a singularity.
+    pub const fn regular(class: PathClass, irradiance: Estimate<f64>) -> Self {
+        PointTruth {
+            class,
+            irradiance,
+            singularity: None,
+        }
+    }
+}
+
+/// The closed form of an entry.
+pub trait Form: Debug + Send + Sync {
+    /// The light at the floor point (x, y, 0), per class that ends there, in the order of the entry's classes.
+    fn at(&self, x: f64, y: f64) -> Vec<PointTruth>;
+
+    /// The light of each of the entry's classes as bundles of rays that land on the floor and are seen from there
+    /// directly, in the order of the classes. `None` where the pixels have a form of their own.
+    fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {
+        None
+    }
+}
+
+/// The form of a kind that has passed [`Entry::validate`].
+pub fn form(kind: &Kind) -> Arc<dyn Form> {
+    match kind {
+        Kind::Diffuse(s) => Arc::new(diffuse::form(s)),
+        Kind::PlanarMirror(s) => Arc::new(planar_mirror::form(s)),
+        Kind::CylinderCup(s) => Arc::new(cylinder_cup::form(s)),
+        Kind::FlatInterface(s) => Arc::new(flat_interface::form(s)),
+        Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
+    }
+}
+
+/// The closed form of an entry's floor, made ready for many points.
+#[derive(Clone, Debug)]
+pub struct FloorTruth {
+    form: Arc<dyn Form>,
+    floor: Floor,
+}
+
+impl FloorTruth {
+    /// The closed form of an entry that has passed [`Entry::validate`]; `None` for a scene without a floor.
+    pub fn new(entry: &Entry) -> Option<Self> {
+        Some(FloorTruth {
+            form: form(&entry.kind),
+            floor: entry.kind.floor()?.clone(),
+        })
+    }
+
+    /// Albedo ρ of the floor: radiance is ρ E/π.
+    pub fn albedo(&self) -> f64 {
+        self.floor.albedo
+    }
+
+    /// Range of coordinate `axis` (0: x, 1: y) on the floor [m].
+    pub fn range(&self, axis: usize) -> [f64; 2] {
+        let (c, w) = (self.floor.center[axis], self.floor.half_width[axis]);
+        [c - w, c + w]
+    }
+
+    /// Whether (x, y) is on the clipped floor.
+    pub fn is_on_floor(&self, x: f64, y: f64) -> bool {
+        let [cx, cy] = self.floor.center;
+        let [wx, wy] = self.floor.half_width;
+        f64::abs(x - cx) <= wx && f64::abs(y - cy) <= wy
+    }
+
+    /// The light at the floor point (x, y, 0), per class.
+    pub fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
+        self.form.at(x, y)
+    }
+}

@@ -1,0 +1,149 @@
+//! From a validated entry to a scene whose light and surface are known at compile time.
+
+use glam::DVec3;
+use nephroid_analytic::scene::{
+    Camera, CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene,
+    GlassSlabScene, Kind, PlanarMirrorScene, PointLight,
+};
+
+use super::arc::Arc;
+use super::chains::Chains;
+use super::floor::Floor;
+use super::light::{Directional, Light, Point};
+use super::pinhole::Pinhole;
+use super::rectangle::Rectangle;
+use super::scene::{Overrides, Scene};
+use super::slab::Slab;
+use super::specular::{Nothing, Specular};
+use super::water::Water;
+
+/// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
+pub enum Compiled {
+    /// No specular surface.
+    Diffuse(Scene<Point, Nothing>),
+    /// Flat mirror.
+    PlanarMirror(Scene<Point, Rectangle>),
+    /// Vertical arc under a directional light.
+    CylinderCup(Scene<Directional, Arc>),
+    /// Flat water.
+    FlatInterface(Scene<Point, Water>),
+}
+
+impl Compiled {
+    /// Whether the entry is of such a kind.
+    pub fn knows(entry: &Entry) -> bool {
+        matches!(
+            entry.kind,
+            Kind::Diffuse(_)
+                | Kind::PlanarMirror(_)
+                | Kind::CylinderCup(_)
+                | Kind::FlatInterface(_)
+        )
+    }
+
+    /// Compiles a validated entry; `None` for the kinds that only [`visit`] knows.
+    pub fn new(entry: &Entry, overrides: Overrides) -> Option<Self> {
+        let build = Build::new(&entry.camera, overrides);
+        Some(match &entry.kind {
+            Kind::Diffuse(s) => Compiled::Diffuse(build.diffuse(s)),
+            Kind::PlanarMirror(s) => Compiled::PlanarMirror(build.planar_mirror(s)),
+            Kind::CylinderCup(s) => Compiled::CylinderCup(build.cylinder_cup(s)),
+            Kind::FlatInterface(s) => Compiled::FlatInterface(build.flat_interface(s)),
+            _ => return None,
+        })
+    }
+}
+
+/// What is done with a scene once its light and surface are known.
+pub trait Visitor {
+    /// What comes out.
+    type Output;
+
+    /// At most one specular interaction on either side of the floor.
+    fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Self::Output;
+
+    /// Chains of specular interactions between light and floor, the floor seen directly.
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output;
+}
+
+/// Compiles a validated entry of any kind.
+pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::Output {
+    let build = Build::new(&entry.camera, overrides);
+    match &entry.kind {
+        Kind::Diffuse(s) => visitor.scene(build.diffuse(s)),
+        Kind::PlanarMirror(s) => visitor.scene(build.planar_mirror(s)),
+        Kind::CylinderCup(s) => visitor.scene(build.cylinder_cup(s)),
+        Kind::FlatInterface(s) => visitor.scene(build.flat_interface(s)),
+        Kind::GlassSlab(s) => visitor.chains(build.glass_slab(s)),
+    }
+}
+
+/// What all kinds need.
+struct Build {
+    camera: Pinhole,
+    overrides: Overrides,
+}
+
+impl Build {
+    fn new(camera: &Camera, overrides: Overrides) -> Self {
+        Build {
+            camera: Pinhole::new(camera),
+            overrides,
+        }
+    }
+
+    fn scene<L, S>(
+        &self,
+        light: L,
+        surface: S,
+        floor: &nephroid_analytic::scene::Floor,
+    ) -> Scene<L, S> {
+        Scene {
+            light,
+            surface,
+            floor: Floor::new(floor),
+            camera: self.camera,
+        }
+    }
+
+    fn point(&self, light: &PointLight) -> Point {
+        Point {
+            position: DVec3::from_array(light.position),
+            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+        }
+    }
+
+    fn directional(&self, light: &DirectionalLight) -> Directional {
+        let elevation = light.elevation_degrees.to_radians();
+        Directional {
+            travel: DVec3::new(libm::cos(elevation), 0.0, -libm::sin(elevation)),
+            irradiance: self.overrides.light_strength.unwrap_or(light.irradiance),
+        }
+    }
+
+    fn reflectance(&self, own: f64) -> f64 {
+        self.overrides.reflectance.unwrap_or(own)
+    }
+
+    fn diffuse(&self, s: &DiffuseScene) -> Scene<Point, Nothing> {
+        self.scene(self.point(&s.light), Nothing, &s.floor)
+    }
+
+    fn planar_mirror(&self, s: &PlanarMirrorScene) -> Scene<Point, Rectangle> {
+        let mirror = Rectangle::new(&s.mirror, self.reflectance(s.mirror.reflectance));
+        self.scene(self.point(&s.light), mirror, &s.floor)
+    }
+
+    fn cylinder_cup(&self, s: &CylinderCupScene) -> Scene<Directional, Arc> {
+        let wall = Arc::new(&s.wall, self.reflectance(s.wall.reflectance));
+        self.scene(self.directional(&s.light), wall, &s.floor)
+    }
+
+    fn flat_interface(&self, s: &FlatInterfaceScene) -> Scene<Point, Water> {
+        self.scene(self.point(&s.light), Water::new(&s.water), &s.floor)
+    }
+
+    fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
+        self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+}
