@@ -20,6 +20,8 @@ pub struct Certificate {
     pub low: f64,
     /// No true value is above this; may be infinite.
     pub high: f64,
+    /// The number of rays that certainly contribute.
+    pub roots: u32,
     /// Whether the number of rays is proven too: `false` on a fold or a shadow's edge to within rounding.
     pub certified: bool,
 }
@@ -88,6 +90,7 @@ fn attach(item: Option<&mut Item>, claims: &[Claim]) {
         row.certificate = claim.map(|c| Certificate {
             low: c.certified.value.low(),
             high: c.certified.value.high(),
+            roots: c.certified.roots,
             certified: c.certified.is_proven(),
         });
     }
