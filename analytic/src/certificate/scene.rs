@@ -1,7 +1,8 @@
 //! From a configuration of a reference table to the proof of every value at a point or of a view.
 //!
 //! Values are named as in `nephroid evaluate`: `E_direct`, `E_caustic`, `L_total`, `paths.LSDE.E`,
-//! `paths.LSDE.roots.0.E` and so on; a value that the scene does not have is not there.
+//! `paths.LSDE.roots.0.E` and so on; a value that the scene does not have is not there. Should any formula on the way ever
+//! compare enclosures that overlap, nothing is claimed at all: see [`decided`].
 
 use crate::certificate::conic_mirrors::ConicMirror;
 use crate::certificate::cylinder_cup::{CylinderCup, Flatland};
@@ -18,7 +19,7 @@ use crate::certificate::sphere_mirror::SphereMirror;
 use crate::certificate::stigmatic_refractors::StigmaticRefractor;
 use crate::certificate::water_waves::WaterWaves;
 use crate::certificate::{Certified, Lit};
-use crate::enclosure::Enclosure;
+use crate::enclosure::{Enclosure, decided};
 use crate::scalar::Scalar;
 use crate::vector::vec3;
 
@@ -199,7 +200,9 @@ impl Scene {
 
     /// Every value at the point of a table; empty if it cannot be read.
     pub fn point_enclosed(&self, point: &dyn Source) -> Vec<Claim> {
-        self.point_claims(point).unwrap_or_default()
+        decided(|| self.point_claims(point))
+            .flatten()
+            .unwrap_or_default()
     }
 
     fn point_claims(&self, point: &dyn Source) -> Option<Vec<Claim>> {
@@ -255,7 +258,9 @@ impl Scene {
 
     /// Every value of the view of a table; empty if it cannot be read or the scene has none.
     pub fn view_enclosed(&self, view: &dyn Source) -> Vec<Claim> {
-        self.view_claims(view).unwrap_or_default()
+        decided(|| self.view_claims(view))
+            .flatten()
+            .unwrap_or_default()
     }
 
     fn view_claims(&self, view: &dyn Source) -> Option<Vec<Claim>> {
