@@ -11,6 +11,7 @@ pub mod flat_interface;
 pub mod glass_slab;
 pub mod glass_sphere;
 pub mod paraboloid;
+pub mod pillar;
 pub mod planar_chains;
 pub mod planar_mirror;
 pub mod singularity;
