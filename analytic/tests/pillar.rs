@@ -220,3 +220,33 @@ fn flux_on_the_floor() {
         assert!((landed / sent - 1.0).abs() < 2e-6, "{landed} {sent}");
     }
 }
+
+/// The formulas in single precision stay within the bounds that they state.
+#[test]
+fn single_precision_is_within_its_bound() {
+    let mut cases = Cases(15);
+    let mut checked = 0;
+    for case in 0..400 {
+        let p = draw(&mut cases);
+        let (r, t) = (p.radius * cases.uniform(1.02, 6.0), cases.uniform(-PI, PI));
+        let (x, y) = (p.x + r * cos(t), p.y + r * sin(t));
+        let single = Pillar {
+            x: p.x as f32,
+            y: p.y as f32,
+            radius: p.radius as f32,
+            height: p.height as f32,
+            reflectance: p.reflectance as f32,
+            light: vec3(p.light.x as f32, p.light.y as f32, p.light.z as f32),
+            intensity: p.intensity as f32,
+        };
+        for (a, b) in [
+            (p.caustic(x, y), single.caustic(x as f32, y as f32)),
+            (p.direct(x, y), single.direct(x as f32, y as f32)),
+        ] {
+            let off = (a.value - f64::from(b.value)).abs();
+            assert!(off <= f64::from(b.error), "case {case}: {a:?} {b:?}");
+            checked += u32::from(a.value > 0.0 && b.error < 1e-3 * b.value);
+        }
+    }
+    assert!(checked > 100, "{checked}");
+}
