@@ -9,6 +9,7 @@ pub mod cylinder_cup;
 pub mod diffuse;
 pub mod entry;
 pub mod flat_interface;
+pub mod glass_pillar;
 pub mod glass_slab;
 pub mod glass_sphere;
 pub mod paraboloid;

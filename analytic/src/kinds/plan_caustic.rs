@@ -36,11 +36,18 @@ pub(super) fn nearest(
     (low, high): (f64, f64),
     touch: impl Fn(f64) -> Option<Touch>,
 ) -> Option<Singularity<f64>> {
-    let mut found = None;
+    let mut found: Option<Singularity<f64>> = None;
     let mut try_touch = |t: Touch, kind: SingularityKind| {
-        if t.lit {
-            let distance = libm::hypot(x - t.point.0, y - t.point.1);
-            found = Singularity::nearer(found, Some(Singularity { kind, distance }));
+        let distance = libm::hypot(x - t.point.0, y - t.point.1);
+        // A cusp is a point of the curve as well: it counts as a cusp if no other point is nearer beyond rounding.
+        let rounding = 1e-9 * (distance + libm::hypot(t.point.0, t.point.1));
+        let nearer = found.is_none_or(|f| match (f.kind, kind) {
+            (SingularityKind::Fold, SingularityKind::Cusp) => distance < f.distance + rounding,
+            (SingularityKind::Cusp, SingularityKind::Fold) => distance < f.distance - rounding,
+            _ => distance < f.distance,
+        });
+        if t.lit && nearer {
+            found = Some(Singularity { kind, distance });
         }
     };
     let zero = |f: &dyn Fn(&Touch) -> f64, from: f64, to: f64| {
@@ -49,8 +56,10 @@ pub(super) fn nearest(
         touch(u)
     };
     let mut last: Option<(f64, Touch)> = None;
-    for n in 0..=STEPS {
-        let u = low + (high - low) * f64::from(n) / f64::from(STEPS);
+    // Both ends, and between them the middles of the steps: a cusp on an axis of symmetry then lies between two.
+    for n in 0..=STEPS + 1 {
+        let step = (f64::from(n) - 0.5).clamp(0.0, f64::from(STEPS));
+        let u = low + (high - low) * step / f64::from(STEPS);
         let now = touch(u);
         if let (Some((v, before)), Some(now)) = (last, now) {
             if (before.ahead(x, y) < 0.0) != (now.ahead(x, y) < 0.0)
