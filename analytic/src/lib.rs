@@ -7,6 +7,7 @@ pub mod bandwidth;
 pub mod camera;
 pub mod class;
 mod double_double;
+pub mod flux;
 pub mod gradient;
 pub mod kinds;
 pub mod optics;
