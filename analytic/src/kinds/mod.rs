@@ -12,6 +12,7 @@ pub mod flat_interface;
 pub mod glass_pillar;
 pub mod glass_slab;
 pub mod glass_sphere;
+pub mod open_floor;
 pub mod paraboloid;
 pub mod pillar;
 mod plan_caustic;

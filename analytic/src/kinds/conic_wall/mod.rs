@@ -19,6 +19,7 @@
 //!
 //! **Accuracy**: a few units of rounding times the conditioning, which grows like 1/distance to the caustic.
 
+pub mod bundle;
 mod curve;
 pub mod focus;
 pub mod fold;

@@ -21,6 +21,8 @@
 //! No singularity: W ≥ s, and E falls to 0 continuously at the edge of the plan shadow, where cos i = 0. Valid for |A| > a
 //! and h > 0. **Accuracy**: a few units of rounding times the conditioning.
 
+pub mod bundle;
+
 use crate::gradient::Gradient;
 use crate::kinds::singularity::Singularity;
 use crate::kinds::{Estimate, rounding_error};
