@@ -12,24 +12,31 @@ pub enum Border {
     Parts(Vec<(Chart, bool)>),
 }
 
-/// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients.
+/// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients;
+/// `size` is the scale of the margin's rounding.
 pub fn find(
     chart: &Chart,
     g: &Grid,
     c: Option<&Chebyshev>,
     depth: u32,
+    size: f64,
     value: &dyn Fn(&Chart, [f64; 2]) -> f64,
 ) -> Border {
     let axis = match c.map_or_else(|| by_signs(g, depth), monotone) {
         Ok(axis) => axis,
         Err(axis) => return Border::Halve(axis),
     };
+    // In a small chart rounding shows in the curve.
+    let slope = c.map_or(f64::INFINITY, |c| {
+        f64::abs(if axis == 0 { c.c[0][1] } else { c.c[1][0] })
+    });
+    let rounding = 8.0 * f64::EPSILON * size;
     // Rounding must not cut a border that coincides with the chart's own.
     let scale = g.iter().flatten().map(|v| v.abs());
     let scale = scale.filter(|v| v.is_finite()).fold(0.0, f64::max);
     let at = |s: f64, t: f64| {
         let p = if axis == 0 { [t, s] } else { [s, t] };
-        value(chart, p) + 1e-13 * scale
+        value(chart, p) + 1e-13 * scale + rounding
     };
     let class = |s: f64| [at(s, -1.0) >= 0.0, at(s, 1.0) >= 0.0];
 
@@ -74,7 +81,7 @@ pub fn find(
                 let s = |x: f64| 0.5 * (low + high) + 0.5 * (high - low) * x;
                 let curve = nodes().map(|x| crossing(|t| at(s(x), t), above));
                 let c = chebyshev(&curve);
-                if c[N - 1].abs() + c[N - 2].abs() < 3e-13 {
+                if c[N - 1].abs() + c[N - 2].abs() < 3e-13 + 4.0 * rounding / slope {
                     parts.push((part.cut(axis, above, powers(&c)), true));
                 } else if cuts.len() > 2 {
                     parts.push((part, false));

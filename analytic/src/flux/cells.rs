@@ -71,8 +71,10 @@ pub struct Cutter<'a> {
     bundle: &'a dyn Bundle,
     lens: &'a Lens,
     floor: &'a Floor,
-    /// Total below which a piece may be left out, into the error.
-    negligible: f64,
+    /// About the radiance of a pixel, at least.
+    typical: f64,
+    /// Largest absolute value of each condition in a first look: the scale of its rounding.
+    scales: [f64; CONDITIONS],
     queue: VecDeque<Task>,
     pieces: Vec<Piece>,
 }
@@ -91,9 +93,11 @@ const DEEPEST: u32 = 64;
 /// Halvings after which samples without light are believed.
 const DARK: u32 = 10;
 /// Cells looked at, at most.
-const MOST: usize = 150_000;
+const MOST: usize = 60_000;
 /// Largest span of a regular and of a folded cell [pixels].
 const SPAN: [f64; 2] = [12.0, 1.0];
+/// Share of a pixel's radiance that a piece may have when it is left out.
+const NEGLIGIBLE: f64 = 1e-12;
 /// Allowed error of an interpolant, relative to its variation.
 const SMOOTH: f64 = 1e-12;
 
@@ -103,12 +107,13 @@ pub fn cut(bundle: &dyn Bundle, lens: &Lens, floor: &Floor) -> Vec<Piece> {
         bundle,
         lens,
         floor,
-        negligible: 0.0,
+        typical: 0.0,
+        scales: [1.0; CONDITIONS],
         queue: VecDeque::new(),
         pieces: Vec::new(),
     };
     let whole = Chart::new(bundle.domain());
-    cutter.negligible = 1e-13 * cutter.rough_total(&whole);
+    cutter.first_look(&whole);
     let step = 2.0 / f64::from(1_u32 << FIRST);
     for j in 0..1 << FIRST {
         for i in 0..1 << FIRST {
@@ -171,20 +176,26 @@ impl Cutter<'_> {
         self.lens.frame().iter().all(|l| l.at(x, y) >= 0.0)
     }
 
-    /// Radiance summed over the pixels of the frame, from midpoints.
-    fn rough_total(&self, chart: &Chart) -> f64 {
+    /// Scales, from midpoints.
+    fn first_look(&mut self, chart: &Chart) {
         const M: u32 = 24;
         let at = |k: u32| (2.0 * f64::from(k) + 1.0) / f64::from(M) - 1.0;
         let mut sum = 0.0;
         for j in 0..M {
             for i in 0..M {
                 let sample = self.sample(chart, [at(i), at(j)]);
+                for (scale, g) in self.scales.iter_mut().zip(sample.conditions) {
+                    if f64::abs(g) > *scale && g.is_finite() {
+                        *scale = f64::abs(g);
+                    }
+                }
                 if Self::exists(&sample) && self.in_frame(sample.floor) {
                     sum += sample.flux.abs();
                 }
             }
         }
-        sum * 4.0 / f64::from(M * M)
+        let pixels = f64::from(self.lens.width) * f64::from(self.lens.height);
+        self.typical = sum * 4.0 / f64::from(M * M) / pixels;
     }
 
     /// Leaves a piece out: what it can carry, from the samples that exist, becomes an error of the pixels around it.
@@ -305,7 +316,7 @@ impl Cutter<'_> {
             .filter(finite_flux)
             .map(|s| s.flux.abs())
             .fold(0.0, f64::max);
-        if task.depth >= 2 * DARK && 4.0 * most < self.negligible {
+        if task.depth >= 2 * DARK && 4.0 * most < NEGLIGIBLE * self.typical {
             self.lose(&task.chart);
             return;
         }
@@ -324,7 +335,7 @@ impl Cutter<'_> {
 
     fn cut_border(&mut self, task: Task, m: usize, g: &Grid, c: Option<&Chebyshev>) {
         let value = |chart: &Chart, p: [f64; 2]| self.sample(chart, p).conditions[m];
-        match border::find(&task.chart, g, c, task.depth, &value) {
+        match border::find(&task.chart, g, c, task.depth, self.scales[m], &value) {
             Border::Halve(axis) => self.halve(task, axis),
             Border::Parts(parts) => {
                 for (chart, done) in parts {
@@ -363,12 +374,11 @@ impl Cutter<'_> {
         let worst = miss[0].max(miss[1]);
         let total = integral(&flux);
         if worst > SMOOTH {
-            if 4.0 * amount < self.negligible {
-                self.push(range, 0.0, 4.0 * amount, None);
-            } else {
+            // What a small cell misses may be large for the cell, but not for the pixel.
+            if 4.0 * amount * worst.min(1.0) > 10.0 * NEGLIGIBLE * self.typical {
                 self.halve(task, usize::from(miss[1] > miss[0]));
+                return;
             }
-            return;
         }
         let error = (worst + 1e-15) * 4.0 * amount;
         let single = (0..2).all(|k| range[k][0].floor() == range[k][1].floor());
