@@ -83,10 +83,8 @@ pub fn find(
                 let c = chebyshev(&curve);
                 if c[N - 1].abs() + c[N - 2].abs() < 3e-13 + 4.0 * rounding / slope {
                     parts.push((part.cut(axis, above, powers(&c)), true));
-                } else if cuts.len() > 2 {
-                    parts.push((part, false));
                 } else {
-                    return Border::Halve(1 - axis);
+                    parts.extend(part.halves(1 - axis).map(|half| (half, false)));
                 }
             }
         }

@@ -334,6 +334,10 @@ impl Cutter<'_> {
     }
 
     fn cut_border(&mut self, task: Task, m: usize, g: &Grid, c: Option<&Chebyshev>) {
+        if task.depth >= DEEPEST {
+            self.lose(&task.chart);
+            return;
+        }
         let value = |chart: &Chart, p: [f64; 2]| self.sample(chart, p).conditions[m];
         match border::find(&task.chart, g, c, task.depth, self.scales[m], &value) {
             Border::Halve(axis) => self.halve(task, axis),
