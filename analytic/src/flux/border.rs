@@ -1,7 +1,7 @@
 //! Where a margin's zero crosses a chart, and the charts that end at it.
 
 use crate::flux::chart::Chart;
-use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers};
+use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers, transposed};
 
 /// What to do with a chart in which a margin may change sign.
 #[derive(Debug)]
@@ -122,11 +122,9 @@ fn by_signs(g: &Grid, depth: u32) -> Result<usize, usize> {
     let mut ordered = [true; 2];
     for axis in 0..2 {
         let (mut up, mut down) = (0, 0);
-        for line in 0..N {
-            let sign = |k: usize| {
-                let v = if axis == 0 { g[line][k] } else { g[k][line] };
-                v >= 0.0
-            };
+        let lines = if axis == 0 { *g } else { transposed(g) };
+        for line in lines {
+            let sign = |k: usize| line[k] >= 0.0;
             let here = |wanted: bool| {
                 (1..N)
                     .filter(|&k| sign(k - 1) != sign(k) && sign(k) == wanted)

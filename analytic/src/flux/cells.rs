@@ -370,10 +370,11 @@ impl Cutter<'_> {
         let rounding = 1e-15 * (x.c[0][0].abs() + y.c[0][0].abs() + x.spread() + y.spread());
         let amount = flux.c[0][0].abs() + flux.spread();
         let mut miss = [0.0; 2];
-        for k in 0..2 {
-            let in_place = (x.tails()[k] + y.tails()[k] - 30.0 * rounding).max(0.0) / place;
-            let in_flux = (flux.tails()[k] - 3e-14 * amount).max(0.0) / amount.max(1e-300);
-            miss[k] = in_place.max(in_flux);
+        let tails = [x.tails(), y.tails(), flux.tails()];
+        for (k, miss) in miss.iter_mut().enumerate() {
+            let in_place = (tails[0][k] + tails[1][k] - 30.0 * rounding).max(0.0) / place;
+            let in_flux = (tails[2][k] - 3e-14 * amount).max(0.0) / amount.max(1e-300);
+            *miss = in_place.max(in_flux);
         }
         let worst = miss[0].max(miss[1]);
         let total = integral(&flux);
@@ -440,18 +441,16 @@ impl Cutter<'_> {
                 }
             }
         }
-        let mut size = [0.0_f64; 2];
-        for k in 0..5 {
-            for (axis, size) in size.iter_mut().enumerate() {
-                let line = |n: usize| if axis == 0 { film[k][n] } else { film[n][k] };
-                let mut length = 0.0;
-                for n in 1..5 {
-                    let (p, q) = (line(n - 1), line(n));
-                    length += (p[0] - q[0]).abs().max((p[1] - q[1]).abs());
-                }
-                *size = size.max(length);
-            }
-        }
+        let length = |line: [[f64; 2]; 5]| -> f64 {
+            let steps = line.windows(2).map(|w| {
+                let d = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
+                f64::abs(d[0]).max(f64::abs(d[1]))
+            });
+            steps.sum()
+        };
+        let columns: [[[f64; 2]; 5]; 5] =
+            core::array::from_fn(|k| core::array::from_fn(|l| film[l][k]));
+        let size = [film, columns].map(|lines| lines.map(length).into_iter().fold(0.0, f64::max));
         Some((range, size))
     }
 }
@@ -459,7 +458,7 @@ impl Cutter<'_> {
 /// The integral over [-1, 1]²: ∫ T_k = 2/(1 - k²) for even k, 0 for odd.
 fn integral(c: &Chebyshev) -> f64 {
     let weight = |k: usize| {
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             2.0 / (1.0 - (k * k) as f64)
         } else {
             0.0

@@ -30,7 +30,7 @@ fn tables() -> &'static Tables {
         let transform = core::array::from_fn(|k| {
             let scale = if k == 0 { 1.0 } else { 2.0 } / N as f64;
             // Nodes ascend: T_k(-x) = (-1)^k T_k(x).
-            let sign = if k % 2 == 0 { scale } else { -scale };
+            let sign = if k.is_multiple_of(2) { scale } else { -scale };
             core::array::from_fn(|n| sign * cos(k as f64 * angle(n)))
         });
         let mut powers = [[0.0; N]; N];
@@ -67,7 +67,8 @@ pub fn powers(coefficients: &[f64; N]) -> [f64; N] {
     core::array::from_fn(|p| (0..N).map(|k| coefficients[k] * t[k][p]).sum())
 }
 
-fn transposed(g: &Grid) -> Grid {
+/// The grid with the variables exchanged.
+pub fn transposed(g: &Grid) -> Grid {
     core::array::from_fn(|l| core::array::from_fn(|k| g[k][l]))
 }
 
