@@ -1,6 +1,6 @@
 //! Where a margin's zero crosses a chart, and the charts that end at it.
 
-use crate::flux::chart::Chart;
+use crate::flux::chart::{Chart, Edge};
 use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers, transposed};
 
 /// What to do with a chart in which a margin may change sign.
@@ -8,8 +8,19 @@ use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers, transposed
 pub enum Border {
     /// Nothing can be said: halve along this axis.
     Halve(usize),
-    /// The parts where the margin is not negative; `false` marks those for which that is not yet known.
-    Parts(Vec<(Chart, bool)>),
+    /// The parts where the margin may be non-negative.
+    Parts(Vec<(Chart, Part)>),
+}
+
+/// What is known of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The margin is not negative.
+    Whole,
+    /// The margin is not negative, and zero at one end.
+    Cut(Edge),
+    /// Nothing.
+    Unknown,
 }
 
 /// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients;
@@ -76,15 +87,16 @@ pub fn find(
         let part = chart.part(range);
         match class(0.5 * (low + high)) {
             [false, false] => {}
-            [true, true] => parts.push((part, true)),
+            [true, true] => parts.push((part, Part::Whole)),
             [_, above] => {
                 let s = |x: f64| 0.5 * (low + high) + 0.5 * (high - low) * x;
                 let curve = nodes().map(|x| crossing(|t| at(s(x), t), above));
                 let c = chebyshev(&curve);
                 if c[N - 1].abs() + c[N - 2].abs() < 3e-13 + 4.0 * rounding / slope {
-                    parts.push((part.cut(axis, above, powers(&c)), true));
+                    let edge = Edge { axis, above };
+                    parts.push((part.cut(edge, powers(&c)), Part::Cut(edge)));
                 } else {
-                    parts.extend(part.halves(1 - axis).map(|half| (half, false)));
+                    parts.extend(part.halves(1 - axis).map(|half| (half, Part::Unknown)));
                 }
             }
         }
