@@ -17,6 +17,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
     ("slab", include_str!("../scenes/slab.toml")),
+    ("underwater", include_str!("../scenes/underwater.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -85,6 +86,7 @@ kinds! {
     }),
     "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
 }
 
 /// The kinds, as an error message lists them.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene,
-    GlassSlabScene, Kind, PlanarMirrorScene, PointLight,
+    GlassSlabScene, Kind, PlanarMirrorScene, PointLight, UnderwaterScene,
 };
 
 use super::arc::Arc;
@@ -15,6 +15,7 @@ use super::rectangle::Rectangle;
 use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
+use super::underwater::Underwater;
 use super::water::Water;
 
 /// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
@@ -75,6 +76,7 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::CylinderCup(s) => visitor.scene(build.cylinder_cup(s)),
         Kind::FlatInterface(s) => visitor.scene(build.flat_interface(s)),
         Kind::GlassSlab(s) => visitor.chains(build.glass_slab(s)),
+        Kind::Underwater(s) => visitor.chains(build.underwater(s)),
     }
 }
 
@@ -145,5 +147,9 @@ impl Build {
 
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+
+    fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
+        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
     }
 }

@@ -18,4 +18,5 @@ pub mod scene;
 pub mod slab;
 pub mod specular;
 pub mod turn;
+pub mod underwater;
 pub mod water;

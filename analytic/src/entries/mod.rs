@@ -10,6 +10,7 @@ mod flat_interface;
 mod glass_slab;
 mod planar_mirror;
 mod strength;
+mod underwater;
 
 use core::fmt::Debug;
 use std::sync::Arc;
@@ -96,6 +97,7 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::CylinderCup(s) => Arc::new(cylinder_cup::form(s)),
         Kind::FlatInterface(s) => Arc::new(flat_interface::form(s)),
         Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
+        Kind::Underwater(s) => Arc::new(underwater::form(s)),
     }
 }
 

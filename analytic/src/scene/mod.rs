@@ -67,6 +67,8 @@ pub enum Kind {
     FlatInterface(FlatInterfaceScene),
     /// A parallel glass slab between a point light and the floor, camera below it.
     GlassSlab(GlassSlabScene),
+    /// A flat water surface over the floor, light above it and camera below it.
+    Underwater(UnderwaterScene),
 }
 
 impl Kind {
@@ -78,6 +80,7 @@ impl Kind {
             Kind::CylinderCup(s) => s,
             Kind::FlatInterface(s) => s,
             Kind::GlassSlab(s) => s,
+            Kind::Underwater(s) => s,
         }
     }
 
