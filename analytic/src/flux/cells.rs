@@ -116,6 +116,9 @@ pub(super) const DEEPEST: u32 = 64;
 const DARK: u32 = 10;
 /// Cells looked at, at most.
 const MOST: usize = 60_000;
+/// What an interpolant misses, in units of its last two orders: enough for a square root at an end, whose coefficients fall
+/// like 1/k².
+const REMAINDER: f64 = 6.0;
 /// Share of a pixel's radiance that a piece may have when it is left out.
 pub(super) const NEGLIGIBLE: f64 = 1e-12;
 /// Cuts a bundle.
@@ -195,7 +198,7 @@ impl Cutter<'_> {
         self.lens.frame().iter().any(|line| {
             let c = x.combined(line.a, y, line.b, line.c);
             let [p, q] = c.tails();
-            c.c[0][0] < -(c.spread() + 3.0 * (p + q))
+            c.c[0][0] < -(c.spread() + REMAINDER * (p + q))
         })
     }
 
@@ -314,7 +317,7 @@ impl Cutter<'_> {
                 continue;
             };
             let [p, q] = c.tails();
-            let spread = c.spread() + 3.0 * (p + q);
+            let spread = c.spread() + REMAINDER * (p + q);
             if c.c[0][0] < -spread {
                 return;
             }
