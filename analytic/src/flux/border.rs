@@ -67,23 +67,28 @@ pub fn find(
     points.sort_by(f64::total_cmp);
     let mut cuts = vec![-1.0];
     for pair in points.windows(2) {
-        let (mut low, mut high) = (pair[0], pair[1]);
-        let first = class(low);
-        if first == class(high) {
-            continue;
-        }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if !(middle > low && middle < high) {
+        let mut from = pair[0];
+        let (mut first, last) = (class(from), class(pair[1]));
+        // Between two samples both ends can change, one after the other.
+        for _ in 0..4 {
+            if first == last {
                 break;
             }
-            if class(middle) == first {
-                low = middle;
-            } else {
-                high = middle;
+            let (mut low, mut high) = (from, pair[1]);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if !(middle > low && middle < high) {
+                    break;
+                }
+                if class(middle) == first {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
             }
+            cuts.push(high);
+            (from, first) = (high, class(high));
         }
-        cuts.push(high);
     }
     cuts.push(1.0);
     let mut parts = Vec::new();
