@@ -5,6 +5,8 @@
 //! parameters that is the integral of a smooth function even where the irradiance has a fold, a cusp or a focus; what is
 //! left to be exact about is the region of integration.
 
+pub mod direct;
+
 use core::fmt::Debug;
 use std::sync::Arc;
 
