@@ -160,7 +160,7 @@ const ALLOWED: &[(&str, &str)] = &[
         "eccentricity",
         "a number from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
     ),
-    ("image_z", "a finite number other than 0 (metres)"),
+    ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
     ("rim_z", "a finite number greater than 0 (metres)"),
     (
         "cap",

@@ -9,6 +9,7 @@ pub mod expectation;
 pub mod exr_output;
 pub mod film;
 pub mod geometry;
+pub mod golden;
 pub mod integrators;
 pub mod judge;
 pub mod output;

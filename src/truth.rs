@@ -6,6 +6,7 @@ use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::scene::Entry;
 use rayon::prelude::*;
 
+use crate::exr_output::{rounded_up, rounding_error};
 use crate::film::compensated_sum;
 
 /// The default relative tolerance of images.
@@ -40,6 +41,23 @@ impl TruthImage {
                     error: mean(errors) + 4.0 * f64::EPSILON * value.abs(),
                 }
             })
+            .collect()
+    }
+
+    /// The channels of the image's file: `<CLASS>.Y` per class, and `error.Y`, a bound on the error of the sum of the
+    /// layers as stored, rounding to f32 included.
+    pub fn channels(&self) -> Vec<(String, Vec<f64>)> {
+        let (_, mut error) = self.total();
+        for layer in &self.layers {
+            for (e, &v) in error.iter_mut().zip(layer) {
+                *e += rounding_error(v);
+            }
+        }
+        error.iter_mut().for_each(|e| *e = rounded_up(*e));
+        let classes = self.classes.iter().zip(&self.layers);
+        classes
+            .map(|(class, layer)| (format!("{class}.Y"), layer.clone()))
+            .chain([("error.Y".to_owned(), error)])
             .collect()
     }
 

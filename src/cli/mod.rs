@@ -2,6 +2,7 @@
 
 mod evaluate;
 mod explain;
+mod golden;
 mod list;
 mod probe;
 mod render;
@@ -36,6 +37,7 @@ enum Command {
     Explain(explain::Args),
     Render(render::Args),
     Run(run::Args),
+    Golden(golden::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -50,6 +52,7 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Golden(args) => golden::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::exr_output::{metadata, rounded_up, rounding_error, write_exr};
+use crate::exr_output::{metadata, write_exr};
 use crate::png_output::{DISPLAY_TRANSFORM, write_png};
 use crate::truth::{self, DEFAULT_TOLERANCE};
 use crate::{entry, exit};
@@ -64,21 +64,11 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         });
     }
     let image = truth::image(&entry, args.tolerance);
-    let (total, mut error) = image.total();
-    for layer in &image.layers {
-        for (e, &v) in error.iter_mut().zip(layer) {
-            *e += rounding_error(v);
-        }
-    }
-    error.iter_mut().for_each(|e| *e = rounded_up(*e));
-
-    let mut layers: Vec<_> = image
-        .classes
+    let channels = image.channels();
+    let layers: Vec<_> = channels
         .iter()
-        .zip(&image.layers)
-        .map(|(class, layer)| (format!("{class}.Y"), layer.as_slice()))
+        .map(|(name, values)| (name.clone(), values.as_slice()))
         .collect();
-    layers.push(("error.Y".to_owned(), &error));
     write_exr(
         &args.output,
         image.width,
@@ -87,7 +77,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         &metadata(&entry),
     )?;
     if args.png {
-        write_png(&png, image.width, image.height, &total)?;
+        write_png(&png, image.width, image.height, &image.total().0)?;
     }
     super::print(&format!(
         "{}: {}×{} pixels, mean radiance in W/(m² sr)",

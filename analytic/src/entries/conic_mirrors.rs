@@ -126,7 +126,11 @@ impl Form for Mirror {
         };
         let reflected: Arc<dyn Bundle> = match shape {
             Shape::Ellipsoid(mirror) => Arc::new(FocusBundle {
-                mirror,
+                unit: Ellipsoid {
+                    defocus: 1.0,
+                    ..mirror
+                },
+                drop: conic.image_z,
                 axis: conic.axis,
                 slope,
             }),
@@ -147,10 +151,14 @@ impl Form for Mirror {
     }
 }
 
-/// The light that comes from an ellipsoid, by the slope of the ray in the focus: smooth however near the floor is.
+/// The light that comes from an ellipsoid, by the slope of the ray in the focus: smooth however near the floor is, and the
+/// same flux at every distance, so that nothing is special about a floor in the focus.
 #[derive(Debug)]
 struct FocusBundle {
-    mirror: Ellipsoid<f64>,
+    /// The mirror, with a receiver 1 m from the focus.
+    unit: Ellipsoid<f64>,
+    /// From the floor up to the focus [m].
+    drop: f64,
     axis: [f64; 2],
     /// The largest slope.
     slope: f64,
@@ -162,14 +170,12 @@ impl Bundle for FocusBundle {
     }
 
     fn ray(&self, u: [f64; 2]) -> Ray {
-        let defocus = self.mirror.defocus;
-        let (x, y) = (u[0] * defocus, u[1] * defocus);
-        let root = self.mirror.reflection(x, y);
+        let root = self.unit.reflection(u[0], u[1]);
         let mut margins = [1.0; MARGINS];
         margins[0] = self.slope * self.slope - (u[0] * u[0] + u[1] * u[1]);
         Ray {
-            floor: [self.axis[0] + x, self.axis[1] + y],
-            flux: root.map_or(0.0, |r| r.irradiance) * defocus * defocus,
+            floor: [0, 1].map(|k| self.axis[k] + u[k] * self.drop),
+            flux: root.map_or(0.0, |r| r.irradiance),
             margins,
         }
     }

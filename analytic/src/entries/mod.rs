@@ -14,6 +14,7 @@ mod flat_interface;
 mod glass_slab;
 mod paraboloid;
 mod planar_mirror;
+mod strength;
 
 use core::fmt::Debug;
 use std::sync::Arc;
@@ -21,7 +22,7 @@ use std::sync::Arc;
 use crate::class::PathClass;
 use crate::flux::Bundle;
 use crate::kinds::Estimate;
-use crate::kinds::singularity::Singularity;
+use crate::kinds::singularity::{Singularity, SingularityKind};
 use crate::scene::{Entry, Floor, Kind};
 
 /// The light of one path class at a floor point.
@@ -35,7 +36,41 @@ pub struct PointTruth {
     pub singularity: Option<Singularity<f64>>,
 }
 
+/// Whether a point's irradiance is a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// It is, with a bound.
+    Regular,
+    /// The point is on a caustic, to within rounding.
+    Singular,
+    /// The configuration is stigmatic, and the point is where all rays meet.
+    Degenerate,
+}
+
+impl State {
+    /// The word for it: `regular`, `singular`, `degenerate`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            State::Regular => "regular",
+            State::Singular => "singular",
+            State::Degenerate => "degenerate",
+        }
+    }
+}
+
 impl PointTruth {
+    /// Whether the irradiance is a number.
+    pub fn state(&self) -> State {
+        let e = &self.irradiance;
+        if e.value.is_finite() && e.error.is_finite() {
+            return State::Regular;
+        }
+        match self.singularity {
+            Some(s) if s.kind == SingularityKind::PointFocus => State::Degenerate,
+            _ => State::Singular,
+        }
+    }
+
     /// Light of a class without a singularity.
     pub const fn regular(class: PathClass, irradiance: Estimate<f64>) -> Self {
         PointTruth {

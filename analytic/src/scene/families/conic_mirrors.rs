@@ -103,11 +103,12 @@ impl Conic {
         if !self.is_ellipsoid() {
             return above("conic.rim_z", self.rim_z, self.vertex_z(), LARGEST);
         }
-        if !(self.image_z.abs() >= 1e-9 * self.semi_axis) {
+        // On the floor the image is a point focus: flux without an irradiance, and reported as such.
+        if self.image_z != 0.0 && !(self.image_z.abs() >= 1e-9 * self.semi_axis) {
             return Err(invalid(
                 "conic.image_z",
                 self.image_z,
-                "a height other than 0: there all reflected light meets in one floor point, a point focus, which has no irradiance",
+                "0, or at least 1e-9 × semi_axis from 0",
             ));
         }
         let lowest = self.image_z.max(0.0);
