@@ -11,10 +11,13 @@ mod convex_sphere;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod furnace;
 mod glass_slab;
 mod paraboloid;
 mod planar_mirror;
 mod strength;
+
+pub use furnace::WallTruth;
 
 use core::fmt::Debug;
 use std::sync::Arc;
@@ -105,6 +108,7 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::ConvexSphere(s) => Arc::new(convex_sphere::form(s)),
         Kind::Paraboloid(s) => Arc::new(paraboloid::form(s)),
         Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
+        Kind::Furnace(s) => Arc::new(furnace::form(s)),
     }
 }
 

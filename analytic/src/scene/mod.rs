@@ -76,6 +76,8 @@ pub enum Kind {
     Paraboloid(ParaboloidScene),
     /// An ellipsoid or hyperboloid above the floor, light at a focus.
     ConicMirrors(ConicMirrorsScene),
+    /// A closed diffuse sphere with a point light inside.
+    Furnace(FurnaceScene),
 }
 
 impl Kind {
@@ -91,6 +93,7 @@ impl Kind {
             Kind::ConvexSphere(s) => s,
             Kind::Paraboloid(s) => s,
             Kind::ConicMirrors(s) => s,
+            Kind::Furnace(s) => s,
         }
     }
 
