@@ -22,6 +22,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("dish", include_str!("../scenes/dish.toml")),
     ("ellipsoid", include_str!("../scenes/ellipsoid.toml")),
     ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
+    ("underwater", include_str!("../scenes/underwater.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -94,6 +95,7 @@ kinds! {
     "paraboloid" => Paraboloid(ParaboloidScene { light: FocalLight, floor: Floor, dish: Dish }),
     "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
 }
 
 /// The kinds, as an error message lists them.

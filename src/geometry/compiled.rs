@@ -4,7 +4,7 @@ use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConcaveSphereScene, ConicMirrorsScene, ConvexSphereScene, CylinderCupScene,
     DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight, GlassSlabScene, Kind,
-    ParaboloidScene, PlanarMirrorScene, PointLight,
+    ParaboloidScene, PlanarMirrorScene, PointLight, UnderwaterScene,
 };
 
 use super::arc::Arc;
@@ -20,6 +20,7 @@ use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
 use super::sphere_cap::SphereCap;
+use super::underwater::Underwater;
 use super::water::Water;
 
 /// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
@@ -84,6 +85,7 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::ConvexSphere(s) => visitor.chains(build.convex_sphere(s)),
         Kind::Paraboloid(s) => visitor.chains(build.paraboloid(s)),
         Kind::ConicMirrors(s) => visitor.chains(build.conic_mirrors(s)),
+        Kind::Underwater(s) => visitor.chains(build.underwater(s)),
     }
 }
 
@@ -184,5 +186,9 @@ impl Build {
 
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+
+    fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
+        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
     }
 }

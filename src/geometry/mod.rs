@@ -23,4 +23,5 @@ pub mod slab;
 pub mod specular;
 pub mod sphere_cap;
 pub mod turn;
+pub mod underwater;
 pub mod water;

@@ -16,6 +16,7 @@ mod glass_slab;
 mod paraboloid;
 mod planar_mirror;
 mod strength;
+mod underwater;
 
 pub use furnace::WallTruth;
 
@@ -109,6 +110,7 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::Paraboloid(s) => Arc::new(paraboloid::form(s)),
         Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
         Kind::Furnace(s) => Arc::new(furnace::form(s)),
+        Kind::Underwater(s) => Arc::new(underwater::form(s)),
     }
 }
 

@@ -10,6 +10,7 @@ mod cells;
 mod chart;
 pub mod direct;
 mod folded;
+mod keep;
 mod lens;
 mod poly;
 mod regular;

@@ -94,7 +94,7 @@ pub fn row(
         cell,
         lens,
         rules: &edges.rules,
-        step: (0.01 * tolerance).max(1e-14),
+        step: (0.01 * tolerance).clamp(1e-14, 1e-8),
         tolerance: 0.05 * tolerance * radiance,
     };
     let count = (columns[1] - columns[0] + 1) as usize;
@@ -302,7 +302,8 @@ impl Task<'_> {
                 size += y.abs();
             }
             let value = sum * (high - low);
-            let rounding = 4.0 * f64::EPSILON * size * (high - low);
+            // The Jacobian is that of the last point but one.
+            let rounding = (4.0 * f64::EPSILON + self.step) * size * (high - low);
             let difference = (value - before).abs();
             result = Bounded {
                 value,

@@ -78,6 +78,8 @@ pub enum Kind {
     ConicMirrors(ConicMirrorsScene),
     /// A closed diffuse sphere with a point light inside.
     Furnace(FurnaceScene),
+    /// A flat water surface over the floor, light above it and camera below it.
+    Underwater(UnderwaterScene),
 }
 
 impl Kind {
@@ -94,6 +96,7 @@ impl Kind {
             Kind::Paraboloid(s) => s,
             Kind::ConicMirrors(s) => s,
             Kind::Furnace(s) => s,
+            Kind::Underwater(s) => s,
         }
     }
 

@@ -10,6 +10,7 @@ mod furnace;
 mod glass_slab;
 mod paraboloid;
 mod planar_mirror;
+mod underwater;
 
 pub use concave_sphere::{ConcaveSphereScene, SphereCap};
 pub use conic_mirrors::{Conic, ConicMirrorsScene};
@@ -21,3 +22,4 @@ pub use furnace::{FurnaceScene, SphereWall};
 pub use glass_slab::{GlassSlabScene, Slab};
 pub use paraboloid::{Dish, ParaboloidScene};
 pub use planar_mirror::PlanarMirrorScene;
+pub use underwater::UnderwaterScene;
