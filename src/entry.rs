@@ -4,7 +4,7 @@ use std::path::Path;
 
 use nephroid_analytic::scene::{
     self, ArcWall, Ball, Camera, Conic, DirectionalLight, Dish, Entry, Floor, FocalLight, Kind,
-    PointLight, RectangleMirror, Slab, SphereCap, Water,
+    PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
 };
 use serde::Deserialize;
 
@@ -22,6 +22,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("dish", include_str!("../scenes/dish.toml")),
     ("ellipsoid", include_str!("../scenes/ellipsoid.toml")),
     ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
+    ("furnace", include_str!("../scenes/furnace.toml")),
     ("underwater", include_str!("../scenes/underwater.toml")),
 ];
 
@@ -94,6 +95,7 @@ kinds! {
     "convex-sphere" => ConvexSphere(ConvexSphereScene { light: PointLight, floor: Floor, ball: Ball }),
     "paraboloid" => Paraboloid(ParaboloidScene { light: FocalLight, floor: Floor, dish: Dish }),
     "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
+    "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
 }
@@ -130,7 +132,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table with radius, height, half_arc_degrees and reflectance",
+        "a table: radius, height, half_arc_degrees and reflectance (arc), or center, radius and albedo (closed sphere)",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),

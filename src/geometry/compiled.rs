@@ -13,6 +13,7 @@ use super::chains::Chains;
 use super::conic::Conic;
 use super::dish::Dish;
 use super::floor::Floor;
+use super::furnace::Furnace;
 use super::light::{Directional, Light, Point};
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
@@ -70,6 +71,9 @@ pub trait Visitor {
 
     /// Chains of specular interactions between light and floor, the floor seen directly.
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output;
+
+    /// A closed diffuse sphere.
+    fn furnace(self, scene: Furnace) -> Self::Output;
 }
 
 /// Compiles a validated entry of any kind.
@@ -85,6 +89,9 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::ConvexSphere(s) => visitor.chains(build.convex_sphere(s)),
         Kind::Paraboloid(s) => visitor.chains(build.paraboloid(s)),
         Kind::ConicMirrors(s) => visitor.chains(build.conic_mirrors(s)),
+        Kind::Furnace(s) => {
+            visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
+        }
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
     }
 }

@@ -14,6 +14,7 @@ pub mod dielectric;
 pub mod dish;
 pub mod emission;
 pub mod floor;
+pub mod furnace;
 pub mod light;
 pub mod pinhole;
 pub mod quadratic;

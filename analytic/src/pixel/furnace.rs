@@ -27,7 +27,7 @@ impl FurnaceImage {
         let wall = WallTruth::new(entry)?;
         let film = Film::new(&entry.camera);
         let scale = wall.albedo() / PI;
-        let constant = wall.at(film.forward).iter().map(|t| Bounded {
+        let constant = wall.at(film.forward).into_iter().map(|t| Bounded {
             value: scale * t.irradiance.value,
             error: scale * t.irradiance.error,
         });
