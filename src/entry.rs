@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Camera, DirectionalLight, Entry, Floor, Kind, PointLight, RectangleMirror, Slab,
-    Water,
+    self, ArcWall, Ball, Camera, Conic, DirectionalLight, Dish, Entry, Floor, FocalLight, Kind,
+    PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
 };
 use serde::Deserialize;
 
@@ -17,6 +17,12 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
     ("slab", include_str!("../scenes/slab.toml")),
+    ("dome", include_str!("../scenes/dome.toml")),
+    ("ball", include_str!("../scenes/ball.toml")),
+    ("dish", include_str!("../scenes/dish.toml")),
+    ("ellipsoid", include_str!("../scenes/ellipsoid.toml")),
+    ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
+    ("furnace", include_str!("../scenes/furnace.toml")),
     ("underwater", include_str!("../scenes/underwater.toml")),
 ];
 
@@ -85,6 +91,11 @@ kinds! {
         light: DirectionalLight, floor: Floor, wall: ArcWall,
     }),
     "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
+    "concave-sphere" => ConcaveSphere(ConcaveSphereScene { light: PointLight, floor: Floor, cap: SphereCap }),
+    "convex-sphere" => ConvexSphere(ConvexSphereScene { light: PointLight, floor: Floor, ball: Ball }),
+    "paraboloid" => Paraboloid(ParaboloidScene { light: FocalLight, floor: Floor, dish: Dish }),
+    "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
+    "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
 }
@@ -121,10 +132,48 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table with radius, height, half_arc_degrees and reflectance",
+        "a table: radius, height, half_arc_degrees and reflectance (arc), or center, radius and albedo (closed sphere)",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),
+    ("ball", "a table with center, radius and reflectance"),
+    (
+        "dish",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+    ),
+    (
+        "conic",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+    ),
+    ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
+    ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "focal_length",
+        "a finite number from 1e-9 to 1e9, less than vertex_z (metres)",
+    ),
+    (
+        "inner_radius",
+        "a finite number from 0, less than outer_radius (metres)",
+    ),
+    (
+        "outer_radius",
+        "a finite number greater than inner_radius (metres)",
+    ),
+    ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "eccentricity",
+        "a number from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
+    ),
+    ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
+    ("rim_z", "a finite number greater than 0 (metres)"),
+    (
+        "cap",
+        "a table with center, radius, half_angle_degrees and reflectance",
+    ),
+    (
+        "half_angle_degrees",
+        "a finite number greater than 0, at most 90",
+    ),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),

@@ -4,13 +4,21 @@
 //! `L S+ D E`. (The water of a `flat-interface` entry is entered before the floor is seen; its floor carries `LSDE`
 //! alone.) For images, a form also tells the light of each class as bundles of rays; see [`crate::flux`].
 
+mod axial;
+mod concave_sphere;
+mod conic_mirrors;
+mod convex_sphere;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod furnace;
 mod glass_slab;
+mod paraboloid;
 mod planar_mirror;
 mod strength;
 mod underwater;
+
+pub use furnace::WallTruth;
 
 use core::fmt::Debug;
 use std::sync::Arc;
@@ -97,6 +105,11 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::CylinderCup(s) => Arc::new(cylinder_cup::form(s)),
         Kind::FlatInterface(s) => Arc::new(flat_interface::form(s)),
         Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
+        Kind::ConcaveSphere(s) => Arc::new(concave_sphere::form(s)),
+        Kind::ConvexSphere(s) => Arc::new(convex_sphere::form(s)),
+        Kind::Paraboloid(s) => Arc::new(paraboloid::form(s)),
+        Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
+        Kind::Furnace(s) => Arc::new(furnace::form(s)),
         Kind::Underwater(s) => Arc::new(underwater::form(s)),
     }
 }
