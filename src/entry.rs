@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Camera, DirectionalLight, Entry, Floor, Kind, PointLight, RectangleMirror, Slab,
-    Water,
+    self, ArcWall, Camera, ConicArc, DirectionalLight, Entry, Floor, Kind, MirrorPillar,
+    PointLight, RectangleMirror, Slab, Water,
 };
 use serde::Deserialize;
 
@@ -17,6 +17,8 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
     ("slab", include_str!("../scenes/slab.toml")),
+    ("pillar", include_str!("../scenes/pillar.toml")),
+    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -85,6 +87,8 @@ kinds! {
     }),
     "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
+    "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
 }
 
 /// The kinds, as an error message lists them.
@@ -119,17 +123,21 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table with radius, height, half_arc_degrees and reflectance",
+        "a table with height, half_arc_degrees, reflectance, and radius (circular) or axis, parameter, eccentricity, and focus if it is not [0, 0] (conic)",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),
+    (
+        "pillar",
+        "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
+    ),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
         "center",
-        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor",
+        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor or a pillar",
     ),
     ("normal", "three finite numbers: a direction of any length"),
     (
@@ -147,8 +155,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("elevation_degrees", "a finite number from 1 to 85"),
     (
         "half_arc_degrees",
-        "a finite number greater than 0, at most 60",
+        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
     ),
+    ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
+    ("axis", "two finite numbers: a direction of any length"),
+    ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("eccentricity", "a finite number from 0 to 10"),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

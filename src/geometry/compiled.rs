@@ -2,14 +2,16 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    Camera, CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene,
-    GlassSlabScene, Kind, PlanarMirrorScene, PointLight,
+    Camera, ConicWallScene, CylinderCupScene, DiffuseScene, DirectionalLight, Entry,
+    FlatInterfaceScene, GlassSlabScene, Kind, PillarScene, PlanarMirrorScene, PointLight,
 };
 
 use super::arc::Arc;
 use super::chains::Chains;
+use super::conic_wall::ConicWall;
 use super::floor::Floor;
 use super::light::{Directional, Light, Point};
+use super::pillar::Pillar;
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
 use super::scene::{Overrides, Scene};
@@ -75,6 +77,8 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::CylinderCup(s) => visitor.scene(build.cylinder_cup(s)),
         Kind::FlatInterface(s) => visitor.scene(build.flat_interface(s)),
         Kind::GlassSlab(s) => visitor.chains(build.glass_slab(s)),
+        Kind::Pillar(s) => visitor.chains(build.pillar(s)),
+        Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
     }
 }
 
@@ -145,5 +149,15 @@ impl Build {
 
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+
+    fn pillar(&self, s: &PillarScene) -> Scene<Point, Pillar> {
+        let pillar = Pillar::new(s, self.reflectance(s.pillar.reflectance));
+        self.scene(self.point(&s.light), pillar, &s.floor)
+    }
+
+    fn conic_wall(&self, s: &ConicWallScene) -> Scene<Point, ConicWall> {
+        let wall = ConicWall::new(s, self.reflectance(s.wall.reflectance));
+        self.scene(self.point(&s.light), wall, &s.floor)
     }
 }

@@ -8,10 +8,12 @@
 pub mod arc;
 pub mod chains;
 pub mod compiled;
+pub mod conic_wall;
 pub mod dielectric;
 pub mod emission;
 pub mod floor;
 pub mod light;
+pub mod pillar;
 pub mod pinhole;
 pub mod rectangle;
 pub mod scene;

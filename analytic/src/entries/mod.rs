@@ -4,10 +4,12 @@
 //! `L S+ D E`. (The water of a `flat-interface` entry is entered before the floor is seen; its floor carries `LSDE`
 //! alone.) For images, a form also tells the light of each class as bundles of rays; see [`crate::flux`].
 
+mod conic_wall;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
 mod glass_slab;
+mod pillar;
 mod planar_mirror;
 mod strength;
 
@@ -96,6 +98,8 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::CylinderCup(s) => Arc::new(cylinder_cup::form(s)),
         Kind::FlatInterface(s) => Arc::new(flat_interface::form(s)),
         Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
+        Kind::Pillar(s) => Arc::new(pillar::form(s)),
+        Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod camera;
 pub mod families;
+mod frame;
 mod light;
 mod ranges;
 mod surface;
@@ -67,6 +68,10 @@ pub enum Kind {
     FlatInterface(FlatInterfaceScene),
     /// A parallel glass slab between a point light and the floor, camera below it.
     GlassSlab(GlassSlabScene),
+    /// A convex vertical mirror on the floor, under a point light.
+    Pillar(PillarScene),
+    /// A vertical wall over an arc of a conic, under a point light.
+    ConicWall(ConicWallScene),
 }
 
 impl Kind {
@@ -78,6 +83,8 @@ impl Kind {
             Kind::CylinderCup(s) => s,
             Kind::FlatInterface(s) => s,
             Kind::GlassSlab(s) => s,
+            Kind::Pillar(s) => s,
+            Kind::ConicWall(s) => s,
         }
     }
 
