@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Camera, DirectionalLight, Entry, Floor, Kind, PointLight, RectangleMirror, Slab,
-    Water,
+    self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
+    Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
 };
 use serde::Deserialize;
 
@@ -17,6 +17,15 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
     ("slab", include_str!("../scenes/slab.toml")),
+    ("dome", include_str!("../scenes/dome.toml")),
+    ("ball", include_str!("../scenes/ball.toml")),
+    ("dish", include_str!("../scenes/dish.toml")),
+    ("ellipsoid", include_str!("../scenes/ellipsoid.toml")),
+    ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
+    ("furnace", include_str!("../scenes/furnace.toml")),
+    ("underwater", include_str!("../scenes/underwater.toml")),
+    ("pillar", include_str!("../scenes/pillar.toml")),
+    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -84,7 +93,15 @@ kinds! {
         light: DirectionalLight, floor: Floor, wall: ArcWall,
     }),
     "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
+    "concave-sphere" => ConcaveSphere(ConcaveSphereScene { light: PointLight, floor: Floor, cap: SphereCap }),
+    "convex-sphere" => ConvexSphere(ConvexSphereScene { light: PointLight, floor: Floor, ball: Ball }),
+    "paraboloid" => Paraboloid(ParaboloidScene { light: FocalLight, floor: Floor, dish: Dish }),
+    "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
+    "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
+    "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
+    "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
 }
 
 /// The kinds, as an error message lists them.
@@ -119,17 +136,59 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table with radius, height, half_arc_degrees and reflectance",
+        "a table: height, half_arc_degrees, reflectance, and radius (circular) or axis, parameter, eccentricity, and focus if it is not [0, 0] (conic); or center, radius and albedo (closed sphere)",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),
+    ("ball", "a table with center, radius and reflectance"),
+    (
+        "dish",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+    ),
+    (
+        "conic",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+    ),
+    ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
+    ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "focal_length",
+        "a finite number from 1e-9 to 1e9, less than vertex_z (metres)",
+    ),
+    (
+        "inner_radius",
+        "a finite number from 0, less than outer_radius (metres)",
+    ),
+    (
+        "outer_radius",
+        "a finite number greater than inner_radius (metres)",
+    ),
+    ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "eccentricity",
+        "a number from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
+    ),
+    ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
+    ("rim_z", "a finite number greater than 0 (metres)"),
+    (
+        "cap",
+        "a table with center, radius, half_angle_degrees and reflectance",
+    ),
+    (
+        "half_angle_degrees",
+        "a finite number greater than 0, at most 90",
+    ),
+    (
+        "pillar",
+        "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
+    ),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
         "center",
-        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor",
+        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor or a pillar",
     ),
     ("normal", "three finite numbers: a direction of any length"),
     (
@@ -147,8 +206,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("elevation_degrees", "a finite number from 1 to 85"),
     (
         "half_arc_degrees",
-        "a finite number greater than 0, at most 60",
+        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
     ),
+    ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
+    ("axis", "two finite numbers: a direction of any length"),
+    ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("eccentricity", "a finite number from 0 to 10"),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use nephroid_analytic::bandwidth::{
     self, Expectation, Kernel, PlanarSetting, Technique, UnknownName,
 };
-use nephroid_analytic::entries::FloorTruth;
+use nephroid_analytic::entries::{FloorTruth, State};
+use nephroid_analytic::kinds::singularity::Singularity;
 use nephroid_analytic::scene::{InvalidParameter, Kind};
 use serde_json::{Value, json};
 
@@ -50,7 +51,9 @@ struct Answer {
     radiance: f64,
     error_bound: f64,
     roots: u32,
-    singularity: Option<f64>,
+    singularity: Option<Singularity<f64>>,
+    strength: Option<f64>,
+    state: State,
     second_moment: Option<f64>,
 }
 
@@ -72,7 +75,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     for (n, point) in read_points(&file, &text)?.into_iter().enumerate() {
         check_on_floor(&file, &entry, &truth, &point)?;
         let [x, y, _] = point.at;
-        answers.extend(truth.at(x, y).into_iter().map(|t| {
+        answers.extend(truth.at(x, y).into_iter().enumerate().map(|(k, t)| {
             let moments = match &regularized {
                 Some(e) if t.class.is_caustic() => Some(e.at([x, y, 0.0], TOLERANCE)),
                 _ => None,
@@ -85,7 +88,10 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                 radiance: truth.albedo() * irradiance / core::f64::consts::PI,
                 error_bound: moments.map_or(t.irradiance.error, |m| m.mean.error),
                 roots: t.irradiance.roots,
-                singularity: t.singularity.map(|s| s.distance),
+                singularity: t.singularity,
+                strength: truth.strength(x, y, k).map(|s| s.value),
+                // A regularized estimator has an expectation everywhere.
+                state: moments.map_or(t.state(), |_| State::Regular),
                 second_moment: moments.map(|m| m.second_moment.value),
             }
         }));
@@ -223,6 +229,24 @@ fn check_on_floor(
     Err(content(file, message, &help))
 }
 
+impl Answer {
+    /// A value of the answer, or null on a singularity.
+    fn number(&self, value: f64) -> Value {
+        match self.state {
+            State::Regular => finite(value),
+            _ => Value::Null,
+        }
+    }
+
+    /// A value of the answer, or the word for the singularity that it is on.
+    fn text(&self, value: f64) -> String {
+        match self.state {
+            State::Regular => format!("{value:e}"),
+            state => state.name().to_owned(),
+        }
+    }
+}
+
 /// A number, or null where it is not finite: JSON has no infinity.
 fn finite(value: f64) -> Value {
     if value.is_finite() {
@@ -239,11 +263,14 @@ fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
             let mut answer = json!({
                 "id": a.id,
                 "class": a.class,
-                "E": finite(a.irradiance),
-                "L": finite(a.radiance),
+                "E": a.number(a.irradiance),
+                "L": a.number(a.radiance),
                 "error_bound": finite(a.error_bound),
                 "roots": a.roots,
-                "singularity": a.singularity.map_or(Value::Null, finite),
+                "singularity": a.singularity.map_or(Value::Null, |s| finite(s.distance)),
+                "singularity_type": a.singularity.map(|s| s.kind.name()),
+                "strength": a.strength,
+                "state": a.state.name(),
             });
             if args.technique.is_some() {
                 answer["second_moment"] = a.second_moment.map_or(Value::Null, finite);
@@ -262,7 +289,8 @@ fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
 }
 
 fn as_csv(answers: &[Answer], regularized: bool) -> String {
-    let mut header = "id,class,E,L,error_bound,roots,singularity".to_owned();
+    let mut header =
+        "id,class,E,L,error_bound,roots,singularity,singularity_type,strength,state".to_owned();
     if regularized {
         header += ",second_moment";
     }
@@ -270,14 +298,17 @@ fn as_csv(answers: &[Answer], regularized: bool) -> String {
     lines.extend(answers.iter().map(|a| {
         let optional = |v: Option<f64>| v.map_or(String::new(), |s| format!("{s:e}"));
         let mut line = format!(
-            "{},{},{:e},{:e},{:.1e},{},{}",
+            "{},{},{},{},{:.1e},{},{},{},{},{}",
             a.id,
             a.class,
-            a.irradiance,
-            a.radiance,
+            a.text(a.irradiance),
+            a.text(a.radiance),
             a.error_bound,
             a.roots,
-            optional(a.singularity)
+            optional(a.singularity.map(|s| s.distance)),
+            a.singularity.map_or("", |s| s.kind.name()),
+            optional(a.strength),
+            a.state.name(),
         );
         if regularized {
             line += &format!(",{}", optional(a.second_moment));

@@ -2,19 +2,29 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    Camera, CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene,
-    GlassSlabScene, Kind, PlanarMirrorScene, PointLight,
+    Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
+    CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
+    GlassSlabScene, Kind, ParaboloidScene, PillarScene, PlanarMirrorScene, PointLight,
+    UnderwaterScene,
 };
 
 use super::arc::Arc;
+use super::ball::Ball;
 use super::chains::Chains;
+use super::conic::Conic;
+use super::conic_wall::ConicWall;
+use super::dish::Dish;
 use super::floor::Floor;
+use super::furnace::Furnace;
 use super::light::{Directional, Light, Point};
+use super::pillar::Pillar;
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
 use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
+use super::sphere_cap::SphereCap;
+use super::underwater::Underwater;
 use super::water::Water;
 
 /// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
@@ -64,6 +74,9 @@ pub trait Visitor {
 
     /// Chains of specular interactions between light and floor, the floor seen directly.
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output;
+
+    /// A closed diffuse sphere.
+    fn furnace(self, scene: Furnace) -> Self::Output;
 }
 
 /// Compiles a validated entry of any kind.
@@ -75,6 +88,16 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::CylinderCup(s) => visitor.scene(build.cylinder_cup(s)),
         Kind::FlatInterface(s) => visitor.scene(build.flat_interface(s)),
         Kind::GlassSlab(s) => visitor.chains(build.glass_slab(s)),
+        Kind::ConcaveSphere(s) => visitor.chains(build.concave_sphere(s)),
+        Kind::ConvexSphere(s) => visitor.chains(build.convex_sphere(s)),
+        Kind::Paraboloid(s) => visitor.chains(build.paraboloid(s)),
+        Kind::ConicMirrors(s) => visitor.chains(build.conic_mirrors(s)),
+        Kind::Furnace(s) => {
+            visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
+        }
+        Kind::Underwater(s) => visitor.chains(build.underwater(s)),
+        Kind::Pillar(s) => visitor.chains(build.pillar(s)),
+        Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
     }
 }
 
@@ -143,7 +166,51 @@ impl Build {
         self.scene(self.point(&s.light), Water::new(&s.water), &s.floor)
     }
 
+    fn concave_sphere(&self, s: &ConcaveSphereScene) -> Scene<Point, SphereCap> {
+        let cap = SphereCap::new(s, self.reflectance(s.cap.reflectance));
+        self.scene(self.point(&s.light), cap, &s.floor)
+    }
+
+    fn convex_sphere(&self, s: &ConvexSphereScene) -> Scene<Point, Ball> {
+        let ball = Ball::new(s, self.reflectance(s.ball.reflectance));
+        self.scene(self.point(&s.light), ball, &s.floor)
+    }
+
+    /// The light at a mirror's focus, over the point where its axis meets the floor.
+    fn focal(&self, light: &FocalLight, [x, y]: [f64; 2], z: f64) -> Point {
+        Point {
+            position: DVec3::new(x, y, z),
+            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+        }
+    }
+
+    fn paraboloid(&self, s: &ParaboloidScene) -> Scene<Point, Dish> {
+        let dish = Dish::new(s, self.reflectance(s.dish.reflectance));
+        let light = self.focal(&s.light, s.dish.axis, s.dish.focus_z());
+        self.scene(light, dish, &s.floor)
+    }
+
+    fn conic_mirrors(&self, s: &ConicMirrorsScene) -> Scene<Point, Conic> {
+        let conic = Conic::new(s, self.reflectance(s.conic.reflectance));
+        let light = self.focal(&s.light, s.conic.axis, s.conic.light_z());
+        self.scene(light, conic, &s.floor)
+    }
+
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+
+    fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
+        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
+    }
+
+    fn pillar(&self, s: &PillarScene) -> Scene<Point, Pillar> {
+        let pillar = Pillar::new(s, self.reflectance(s.pillar.reflectance));
+        self.scene(self.point(&s.light), pillar, &s.floor)
+    }
+
+    fn conic_wall(&self, s: &ConicWallScene) -> Scene<Point, ConicWall> {
+        let wall = ConicWall::new(s, self.reflectance(s.wall.reflectance));
+        self.scene(self.point(&s.light), wall, &s.floor)
     }
 }

@@ -4,11 +4,23 @@
 //! `L S+ D E`. (The water of a `flat-interface` entry is entered before the floor is seen; its floor carries `LSDE`
 //! alone.) For images, a form also tells the light of each class as bundles of rays; see [`crate::flux`].
 
+mod axial;
+mod concave_sphere;
+mod conic_mirrors;
+mod conic_wall;
+mod convex_sphere;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod furnace;
 mod glass_slab;
+mod paraboloid;
+mod pillar;
 mod planar_mirror;
+mod strength;
+mod underwater;
+
+pub use furnace::WallTruth;
 
 use core::fmt::Debug;
 use std::sync::Arc;
@@ -16,7 +28,7 @@ use std::sync::Arc;
 use crate::class::PathClass;
 use crate::flux::Bundle;
 use crate::kinds::Estimate;
-use crate::kinds::singularity::Singularity;
+use crate::kinds::singularity::{Singularity, SingularityKind};
 use crate::scene::{Entry, Floor, Kind};
 
 /// The light of one path class at a floor point.
@@ -30,7 +42,41 @@ pub struct PointTruth {
     pub singularity: Option<Singularity<f64>>,
 }
 
+/// Whether a point's irradiance is a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// It is, with a bound.
+    Regular,
+    /// The point is on a caustic, to within rounding.
+    Singular,
+    /// The configuration is stigmatic, and the point is where all rays meet.
+    Degenerate,
+}
+
+impl State {
+    /// The word for it: `regular`, `singular`, `degenerate`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            State::Regular => "regular",
+            State::Singular => "singular",
+            State::Degenerate => "degenerate",
+        }
+    }
+}
+
 impl PointTruth {
+    /// Whether the irradiance is a number.
+    pub fn state(&self) -> State {
+        let e = &self.irradiance;
+        if e.value.is_finite() && e.error.is_finite() {
+            return State::Regular;
+        }
+        match self.singularity {
+            Some(s) if s.kind == SingularityKind::PointFocus => State::Degenerate,
+            _ => State::Singular,
+        }
+    }
+
     /// Light of a class without a singularity.
     pub const fn regular(class: PathClass, irradiance: Estimate<f64>) -> Self {
         PointTruth {
@@ -61,6 +107,14 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::CylinderCup(s) => Arc::new(cylinder_cup::form(s)),
         Kind::FlatInterface(s) => Arc::new(flat_interface::form(s)),
         Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
+        Kind::ConcaveSphere(s) => Arc::new(concave_sphere::form(s)),
+        Kind::ConvexSphere(s) => Arc::new(convex_sphere::form(s)),
+        Kind::Paraboloid(s) => Arc::new(paraboloid::form(s)),
+        Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
+        Kind::Furnace(s) => Arc::new(furnace::form(s)),
+        Kind::Underwater(s) => Arc::new(underwater::form(s)),
+        Kind::Pillar(s) => Arc::new(pillar::form(s)),
+        Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
     }
 }
 

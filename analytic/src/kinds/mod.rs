@@ -4,12 +4,17 @@
 //! to the nearest singularity. Formulas are generic over [`Scalar`]; nothing here allocates unless it says so.
 
 pub mod conic_mirrors;
+pub mod conic_wall;
 pub mod cylinder_cup;
 pub mod diffuse;
 pub mod flat_interface;
+pub mod glass_pillar;
 pub mod glass_slab;
 pub mod glass_sphere;
+pub mod open_floor;
 pub mod paraboloid;
+pub mod pillar;
+mod plan_caustic;
 pub mod planar_chains;
 pub mod planar_mirror;
 pub mod singularity;

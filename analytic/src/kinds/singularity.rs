@@ -13,6 +13,18 @@ pub enum SingularityKind {
     PointFocus,
 }
 
+impl SingularityKind {
+    /// The word for it: `fold`, `cusp`, `line_focus`, `point_focus`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            SingularityKind::Fold => "fold",
+            SingularityKind::Cusp => "cusp",
+            SingularityKind::LineFocus => "line_focus",
+            SingularityKind::PointFocus => "point_focus",
+        }
+    }
+}
+
 /// The nearest singularity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Singularity<S> {

@@ -8,6 +8,7 @@
 
 mod camera;
 pub mod families;
+mod frame;
 mod light;
 mod ranges;
 mod surface;
@@ -67,6 +68,22 @@ pub enum Kind {
     FlatInterface(FlatInterfaceScene),
     /// A parallel glass slab between a point light and the floor, camera below it.
     GlassSlab(GlassSlabScene),
+    /// A concave spherical cap above the floor, under a point light.
+    ConcaveSphere(ConcaveSphereScene),
+    /// A mirror ball above the floor, under a point light.
+    ConvexSphere(ConvexSphereScene),
+    /// A paraboloid above the floor, light at the focus.
+    Paraboloid(ParaboloidScene),
+    /// An ellipsoid or hyperboloid above the floor, light at a focus.
+    ConicMirrors(ConicMirrorsScene),
+    /// A closed diffuse sphere with a point light inside.
+    Furnace(FurnaceScene),
+    /// A flat water surface over the floor, light above it and camera below it.
+    Underwater(UnderwaterScene),
+    /// A convex vertical mirror on the floor, under a point light.
+    Pillar(PillarScene),
+    /// A vertical wall over an arc of a conic, under a point light.
+    ConicWall(ConicWallScene),
 }
 
 impl Kind {
@@ -78,6 +95,14 @@ impl Kind {
             Kind::CylinderCup(s) => s,
             Kind::FlatInterface(s) => s,
             Kind::GlassSlab(s) => s,
+            Kind::ConcaveSphere(s) => s,
+            Kind::ConvexSphere(s) => s,
+            Kind::Paraboloid(s) => s,
+            Kind::ConicMirrors(s) => s,
+            Kind::Furnace(s) => s,
+            Kind::Underwater(s) => s,
+            Kind::Pillar(s) => s,
+            Kind::ConicWall(s) => s,
         }
     }
 

@@ -72,7 +72,7 @@ pub struct Root<S> {
 
 /// A ray with its refraction.
 #[derive(Clone, Copy)]
-pub(super) struct Ray<S> {
+pub(in crate::kinds) struct Ray<S> {
     pub sin_i: S,
     pub cos_i: S,
     /// n cos r.
@@ -86,7 +86,7 @@ pub(super) struct Ray<S> {
 
 /// Bounds of |sin i|, dδ/di and its derivatives over a range of incidence angles.
 #[derive(Clone, Copy)]
-pub(super) struct Bounds<S> {
+pub(in crate::kinds) struct Bounds<S> {
     pub sine: S,
     pub turn: S,
     pub turn_1: S,
@@ -96,7 +96,7 @@ pub(super) struct Bounds<S> {
 impl<S: Scalar> GlassSphere<S> {
     /// The ray with incidence `i` after `interactions`.
     #[inline(always)]
-    pub(super) fn ray(&self, i: S, interactions: u32) -> Ray<S> {
+    pub(in crate::kinds) fn ray(&self, i: S, interactions: u32) -> Ray<S> {
         let (sin_i, cos_i) = (i.sin(), i.cos());
         let q = (self.gap() + cos_i.squared()).sqrt();
         let chords = S::TWO * S::from_f64(f64::from(interactions) - 1.0);
@@ -150,7 +150,7 @@ impl<S: Scalar> GlassSphere<S> {
     /// With p = n² - sin² i, dr/di = cos i/√p falls from 1/n on the axis to 0 at grazing incidence, and
     /// d²r/di² = -(n² - 1) sin i/p^(3/2), d³r/di³ = -(n² - 1) cos i (1/p^(3/2) + 3 sin² i/p^(5/2)).
     #[inline(always)]
-    pub(super) fn bounds(&self, i: S, half: S, interactions: u32) -> Bounds<S> {
+    pub(in crate::kinds) fn bounds(&self, i: S, half: S, interactions: u32) -> Bounds<S> {
         let quarter = S::HALF * S::PI;
         let far = (i.abs() + half).min(quarter);
         let near = (i.abs() - half).max(S::ZERO);
