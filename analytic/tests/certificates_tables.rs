@@ -12,8 +12,8 @@ struct Json<'a>(&'a Value);
 
 impl Source for Json<'_> {
     fn text(&self, key: &str, indices: &[usize]) -> Option<String> {
-        let value = indices.iter().try_fold(self.0.get(key)?, |v, i| v.get(i))?;
-        match value {
+        let at = key.split('.').try_fold(self.0, |v, k| v.get(k))?;
+        match indices.iter().try_fold(at, |v, i| v.get(i))? {
             Value::String(s) => Some(s.clone()),
             Value::Number(n) => Some(n.to_string()),
             _ => None,

@@ -216,6 +216,55 @@ fn square_root_at_a_border_and_nothing_beyond_it() {
     );
 }
 
+/// The second condition is not a number where the first is violated.
+#[derive(Debug)]
+struct Dependent;
+
+impl Bundle for Dependent {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        SQUARE
+    }
+
+    fn ray(&self, [u, v]: [f64; 2]) -> Ray {
+        let m = 1.0 - u * u - v * v;
+        let w = m.sqrt();
+        let mut margins = [1.0; MARGINS];
+        (margins[0], margins[5]) = (w - 0.3, m);
+        Ray {
+            floor: [0.5 * u, 0.5 * v + 0.1 * w],
+            flux: w,
+            margins,
+        }
+    }
+}
+
+#[test]
+fn a_condition_on_what_another_lets_pass() {
+    let all = pixels(&down(32), one(Dependent), 1e-8);
+    let total = TAU / 3.0 * (1.0 - 0.027) * radiance_per_flux(32);
+    let error: f64 = all.iter().map(|p| p.error).sum();
+    assert!(
+        (sum(&all) / total - 1.0).abs() < 1e-10,
+        "{:e}",
+        sum(&all) / total - 1.0
+    );
+    assert!(error < 1e-6 * total, "{error:e}");
+}
+
+#[test]
+fn what_cannot_be_resolved_is_in_the_error() {
+    // An edge that no margin announces.
+    let step = |u: f64, v: f64| ([u, v], f64::from(u8::from(u + 0.3 * v < 0.1)), 1.0);
+    let all = pixels(&down(32), one(Of(SQUARE, step)), 1e-6);
+    let total = 2.2 * radiance_per_flux(32);
+    let error: f64 = all.iter().map(|p| p.error).sum();
+    let difference = (sum(&all) - total).abs();
+    assert!(
+        difference <= error && error < 0.05 * total,
+        "{difference:e} {error:e} {total}"
+    );
+}
+
 #[test]
 fn rays_to_infinity() {
     // A point light by directions, up to beyond the horizon, against its irradiance.
@@ -277,4 +326,74 @@ fn shadows_subtract() {
     );
     let dark = a.iter().filter(|p| p.value.abs() < 1e-12).count();
     assert!(dark > 40, "{dark}");
+}
+
+/// Light through waves: a network of folds and cusps.
+fn waves(x: f64, y: f64) -> ([f64; 2], f64) {
+    let (s, c) = libm::sincos(5.0 * x + 0.5);
+    let (s2, c2) = libm::sincos(3.0 * x - 6.0 * y);
+    let z = 0.9 + 0.05 * s + 0.04 * s2;
+    let (zx, zy) = (0.25 * c + 0.12 * c2, -0.24 * c2);
+    (
+        [x - z * zx / (1.0 + zx * zx).sqrt(), y - z * zy],
+        1.0 + 0.2 * x,
+    )
+}
+
+fn straight(camera: &Camera, tolerance: f64) -> Vec<Bounded> {
+    let bundle = |x: f64, y: f64| {
+        let (floor, flux) = waves(x, y);
+        (floor, flux, 1.0)
+    };
+    pixels(
+        camera,
+        one(Of([[-0.9, 0.8], [-0.7, 0.75]], bundle)),
+        tolerance,
+    )
+}
+
+/// The same rays by sheared parameters, so that their rectangle is cut out by margins, with corners.
+#[derive(Debug)]
+struct Sheared;
+
+impl Bundle for Sheared {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-1.3, 1.4], [-1.2, 1.3]]
+    }
+
+    fn ray(&self, [p, q]: [f64; 2]) -> Ray {
+        let (x, y) = (p + 0.37 * q, q - 0.21 * p);
+        let (floor, flux) = waves(x, y);
+        let mut margins = [1.0; MARGINS];
+        margins[..4].copy_from_slice(&[x + 0.9, 0.8 - x, y + 0.7, 0.75 - y]);
+        Ray {
+            floor,
+            flux: flux * (1.0 + 0.37 * 0.21),
+            margins,
+        }
+    }
+}
+
+#[test]
+fn two_parametrisations_of_a_network_of_caustics() {
+    let camera = down(48);
+    let a = straight(&camera, 1e-9);
+    let b = pixels(&camera, one(Sheared), 1e-9);
+    let (difference, excess) = compare(&a, &b);
+    assert!(
+        difference < 1e-9 && excess < 1e-12,
+        "{difference:e} {excess:e}"
+    );
+    let mean = sum(&a) / a.len() as f64;
+    for tolerance in [1e-3, 1e-5, 1e-7] {
+        let rough = straight(&camera, tolerance);
+        let (difference, excess) = compare(&rough, &b);
+        let worst = rough.iter().map(|p| p.error).fold(0.0, f64::max) / mean;
+        assert!(
+            difference < tolerance && excess < 1e-12,
+            "{difference:e} {excess:e}"
+        );
+        // The estimate is worth something, too.
+        assert!(worst < 10.0 * tolerance, "{worst:e}");
+    }
 }

@@ -60,6 +60,11 @@ impl Certified {
         }
     }
 
+    /// Whether the value is bounded and the number of rays known.
+    pub fn is_proven(&self) -> bool {
+        !self.undecided && self.value.is_finite()
+    }
+
     /// Adds a ray.
     pub fn add(&mut self, irradiance: Enclosure, lit: Lit) {
         match lit {

@@ -27,25 +27,31 @@ struct Extent {
     half_height: Enclosure,
 }
 
-/// A vector over its length, which is that of the closest rational where the components allow.
+/// A vector over its length.
 fn unit(v: Point) -> Point {
     v * (Enclosure::ONE / v.length())
 }
 
 impl PlanarMirror {
-    /// The mirror of `light`, `I`, `R`, `mirror_point`, `mirror_normal`; an `extent` must be `unbounded`.
+    /// The mirror of `light`, `I`, `R`, `mirror_point`, `mirror_normal`, and, if it is clipped, `extent.edge`,
+    /// `extent.half_width`, `extent.half_height`.
     pub fn read(p: &dyn Source) -> Option<Self> {
-        if p.text("extent", &[]).is_some_and(|e| e != "unbounded") {
-            return None;
-        }
-        Some(PlanarMirror {
+        let mirror = PlanarMirror {
             light: p.point("light")?,
             intensity: p.number("I")?,
             reflectance: p.number("R")?,
             point: p.point("mirror_point")?,
             normal: unit(p.point("mirror_normal")?),
             extent: None,
-        })
+        };
+        if !p.has("extent.half_width") {
+            return Some(mirror);
+        }
+        Some(mirror.clipped(
+            p.point("extent.edge")?,
+            p.number("extent.half_width")?,
+            p.number("extent.half_height")?,
+        ))
     }
 
     /// The same mirror, clipped to a rectangle around its point, with `half_width` along `edge`.

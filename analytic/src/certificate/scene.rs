@@ -404,10 +404,22 @@ impl Claims {
         }
     }
 
+    /// The rays in descending order: the n-th largest value is between the n-th largest of all lower and of all upper ends.
+    /// Nothing where a ray may be missing.
     fn add_rays(&mut self, place: &str, key: &str, bundle: &Bundle) {
-        for (i, (value, lit)) in bundle.rays.iter().enumerate() {
-            let mut ray = Certified::NONE;
-            ray.add(*value, *lit);
+        if bundle.total.undecided {
+            return;
+        }
+        let sorted = |end: fn(Enclosure) -> f64| {
+            let mut ends: Vec<_> = bundle.rays.iter().map(|(e, _)| end(*e)).collect();
+            ends.sort_by(|a, b| b.total_cmp(a));
+            ends
+        };
+        let ends = sorted(Enclosure::low)
+            .into_iter()
+            .zip(sorted(Enclosure::high));
+        for (i, (low, high)) in ends.enumerate() {
+            let ray = Certified::of(Enclosure::new(low, high));
             self.add(&format!("{place}.{i}.{key}"), ray);
         }
     }

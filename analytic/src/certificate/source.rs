@@ -9,7 +9,7 @@ use crate::vector::vec3;
 pub trait Source {
     /// The text under `key`, and under `indices` of the (nested) array there; `None` if there is none.
     ///
-    /// A JSON number counts as its text.
+    /// A number counts as its text; a dot in `key` goes one object down.
     fn text(&self, key: &str, indices: &[usize]) -> Option<String>;
 
     /// The tightest interval around a number.

@@ -1,7 +1,7 @@
 //! Where a margin's zero crosses a chart, and the charts that end at it.
 
 use crate::flux::chart::{Chart, Edge};
-use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers, transposed};
+use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers, transposed, zeros};
 
 /// What to do with a chart in which a margin may change sign.
 #[derive(Debug)]
@@ -55,25 +55,40 @@ pub fn find(
     let mut points = vec![-1.0];
     points.extend(nodes());
     points.push(1.0);
+    // The curve can leave through a side and come back between two of them: look where the side's function turns.
+    for side in [-1.0, 1.0] {
+        let c = powers(&chebyshev(&nodes().map(|s| at(s, side))));
+        let slope = core::array::from_fn(|k| match c.get(k + 1) {
+            Some(c) => (k + 1) as f64 * c,
+            None => 0.0,
+        });
+        points.extend(zeros(&slope).as_slice());
+    }
+    points.sort_by(f64::total_cmp);
     let mut cuts = vec![-1.0];
     for pair in points.windows(2) {
-        let (mut low, mut high) = (pair[0], pair[1]);
-        let first = class(low);
-        if first == class(high) {
-            continue;
-        }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if !(middle > low && middle < high) {
+        let mut from = pair[0];
+        let (mut first, last) = (class(from), class(pair[1]));
+        // Between two samples both ends can change, one after the other.
+        for _ in 0..4 {
+            if first == last {
                 break;
             }
-            if class(middle) == first {
-                low = middle;
-            } else {
-                high = middle;
+            let (mut low, mut high) = (from, pair[1]);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if !(middle > low && middle < high) {
+                    break;
+                }
+                if class(middle) == first {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
             }
+            cuts.push(high);
+            (from, first) = (high, class(high));
         }
-        cuts.push(high);
     }
     cuts.push(1.0);
     let mut parts = Vec::new();

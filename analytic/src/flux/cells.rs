@@ -112,10 +112,13 @@ impl Task {
 const FIRST: u32 = 3;
 /// Halvings, at most.
 pub(super) const DEEPEST: u32 = 64;
-/// Halvings after which samples without light are believed.
+/// Halvings after which samples without light are believed, where that cannot be proven.
 const DARK: u32 = 10;
 /// Cells looked at, at most.
 const MOST: usize = 60_000;
+/// What an interpolant misses, in units of its last two orders: enough for a square root at an end, whose coefficients fall
+/// like 1/k².
+const REMAINDER: f64 = 6.0;
 /// Share of a pixel's radiance that a piece may have when it is left out.
 pub(super) const NEGLIGIBLE: f64 = 1e-12;
 /// Cuts a bundle.
@@ -195,7 +198,7 @@ impl Cutter<'_> {
         self.lens.frame().iter().any(|line| {
             let c = x.combined(line.a, y, line.b, line.c);
             let [p, q] = c.tails();
-            c.c[0][0] < -(c.spread() + 3.0 * (p + q))
+            c.c[0][0] < -(c.spread() + REMAINDER * (p + q))
         })
     }
 
@@ -300,23 +303,21 @@ impl Cutter<'_> {
             (finite(&xs) && finite(&ys)).then(|| (Chebyshev::new(&xs), Chebyshev::new(&ys)));
 
         // Conditions: violated everywhere, satisfied everywhere, or neither.
-        let mut mixed = None;
+        // One that is not a number somewhere may be so because another is violated there, which then comes first.
+        let (mut mixed, mut unknown, mut dark) = (None, None, false);
         for m in 0..CONDITIONS {
             if task.settled & (1 << m) != 0 {
                 continue;
             }
             let g = grid(&|s| s.conditions[m]);
-            let believed = task.depth >= DARK;
-            if believed && g.iter().flatten().all(|v| !(*v >= 0.0)) {
-                return;
-            }
             let c = finite(&g).then(|| Chebyshev::new(&g));
             let Some(c) = c else {
-                mixed = mixed.or(Some((m, g, None)));
+                dark |= task.depth >= DARK && g.iter().flatten().all(|v| !(*v >= 0.0));
+                unknown = unknown.or(Some((m, g, None)));
                 continue;
             };
             let [p, q] = c.tails();
-            let spread = c.spread() + 3.0 * (p + q);
+            let spread = c.spread() + REMAINDER * (p + q);
             if c.c[0][0] < -spread {
                 return;
             }
@@ -325,6 +326,9 @@ impl Cutter<'_> {
             } else {
                 mixed = mixed.or(Some((m, g, Some(c))));
             }
+        }
+        if dark && mixed.is_none() {
+            return;
         }
         if let Some((x, y)) = &on_floor
             && self.out_of_frame(x, y)
@@ -343,7 +347,7 @@ impl Cutter<'_> {
             self.lose(&task.chart);
             return;
         }
-        if let Some((m, g, c)) = mixed {
+        if let Some((m, g, c)) = mixed.or(unknown) {
             self.cut_border(task, m, &g, c.as_ref());
             return;
         }

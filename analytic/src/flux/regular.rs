@@ -67,7 +67,7 @@ pub fn row(
     edges: &Edges,
     j: i64,
     columns: [i64; 2],
-    tolerance: f64,
+    (tolerance, typical): (f64, f64),
     out: &mut [Bounded],
 ) -> Option<()> {
     let sides = [(0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)].map(|(axis, end)| {
@@ -95,7 +95,8 @@ pub fn row(
         lens,
         rules: &edges.rules,
         step: (0.01 * tolerance).clamp(1e-14, 1e-8),
-        tolerance: 0.05 * tolerance * radiance,
+        // Near a fold a cell is much brighter than the pixel of which it is a small part.
+        tolerance: 0.05 * tolerance * radiance.min(typical),
     };
     let count = (columns[1] - columns[0] + 1) as usize;
     let mut sums = [Bounded::default(); MOST];
