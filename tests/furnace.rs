@@ -19,7 +19,7 @@ fn furnace() -> (Entry, FurnaceScene) {
 #[test]
 fn the_wall_takes_all_the_light() {
     let (mut entry, scene) = furnace();
-    for shift in [0.0, 0.4, 1.1, 1.55] {
+    for shift in [0.0, 0.4, 0.9, 1.3] {
         let [x, y, z] = scene.wall.center;
         let Kind::Furnace(s) = &mut entry.kind else {
             panic!("the furnace is a furnace");

@@ -177,8 +177,13 @@ fn smooth_pixels_are_the_means_of_point_values() {
         let scale = closed.albedo() / PI;
         let classes = image.classes.len();
         let mut compared = vec![0; classes];
-        for k in 0..36_usize {
-            let (i, j) = (11 + 21 * (k % 6), 9 + 21 * (k / 6));
+        // All over the frame, and once more in its middle.
+        for k in 0..72_usize {
+            let (i, j) = if k < 36 {
+                (11 + 21 * (k % 6), 9 + 21 * (k / 6))
+            } else {
+                (53 + 4 * (k % 6), 57 + 3 * (k / 6 - 6))
+            };
             let mean = |rule: &[(f64, f64)]| {
                 let mut sum = vec![0.0; classes];
                 for &(s, ws) in rule {
