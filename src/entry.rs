@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Ball, Camera, Conic, DirectionalLight, Dish, Entry, Floor, FocalLight, Kind,
-    PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
+    self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
+    Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
 };
 use serde::Deserialize;
 
@@ -24,6 +24,8 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
     ("furnace", include_str!("../scenes/furnace.toml")),
     ("underwater", include_str!("../scenes/underwater.toml")),
+    ("pillar", include_str!("../scenes/pillar.toml")),
+    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -98,6 +100,8 @@ kinds! {
     "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
+    "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
+    "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
 }
 
 /// The kinds, as an error message lists them.
@@ -132,7 +136,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table: radius, height, half_arc_degrees and reflectance (arc), or center, radius and albedo (closed sphere)",
+        "a table: height, half_arc_degrees, reflectance, and radius (circular) or axis, parameter, eccentricity, and focus if it is not [0, 0] (conic); or center, radius and albedo (closed sphere)",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),
@@ -174,13 +178,17 @@ const ALLOWED: &[(&str, &str)] = &[
         "half_angle_degrees",
         "a finite number greater than 0, at most 90",
     ),
+    (
+        "pillar",
+        "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
+    ),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
         "center",
-        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor",
+        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor or a pillar",
     ),
     ("normal", "three finite numbers: a direction of any length"),
     (
@@ -198,8 +206,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("elevation_degrees", "a finite number from 1 to 85"),
     (
         "half_arc_degrees",
-        "a finite number greater than 0, at most 60",
+        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
     ),
+    ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
+    ("axis", "two finite numbers: a direction of any length"),
+    ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
+    ("eccentricity", "a finite number from 0 to 10"),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

@@ -13,7 +13,8 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use toml::{Table, Value};
 
 /// Keys that are no lengths.
-const PURE: [&str; 10] = [
+const PURE: [&str; 11] = [
+    "axis",
     "intensity",
     "irradiance",
     "albedo",
@@ -206,7 +207,8 @@ const HANDED: [&str; 1] = ["planar-chains"];
 /// The scene mirrored at the plane y = 0 has the mirrored irradiance.
 #[test]
 fn irradiance_has_the_symmetry_of_space() {
-    const POINTS: [&str; 8] = [
+    const POINTS: [&str; 9] = [
+        "focus",
         "position",
         "center",
         "look_at",

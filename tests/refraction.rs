@@ -37,6 +37,10 @@ impl Visitor for OneRoot<'_> {
     /// Number of compared points and the largest relative difference.
     type Output = (usize, f64);
 
+    fn furnace(self, _: nephroid::geometry::furnace::Furnace) -> Self::Output {
+        unreachable!("nothing refracts in a furnace")
+    }
+
     fn scene<L: Light, S: Specular>(self, _: Scene<L, S>) -> Self::Output {
         panic!("a kind with chains is expected")
     }

@@ -2,19 +2,22 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    Camera, ConcaveSphereScene, ConicMirrorsScene, ConvexSphereScene, CylinderCupScene,
-    DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight, GlassSlabScene, Kind,
-    ParaboloidScene, PlanarMirrorScene, PointLight, UnderwaterScene,
+    Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
+    CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
+    GlassSlabScene, Kind, ParaboloidScene, PillarScene, PlanarMirrorScene, PointLight,
+    UnderwaterScene,
 };
 
 use super::arc::Arc;
 use super::ball::Ball;
 use super::chains::Chains;
 use super::conic::Conic;
+use super::conic_wall::ConicWall;
 use super::dish::Dish;
 use super::floor::Floor;
 use super::furnace::Furnace;
 use super::light::{Directional, Light, Point};
+use super::pillar::Pillar;
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
 use super::scene::{Overrides, Scene};
@@ -93,6 +96,8 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
             visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
         }
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
+        Kind::Pillar(s) => visitor.chains(build.pillar(s)),
+        Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
     }
 }
 
@@ -197,5 +202,15 @@ impl Build {
 
     fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
         self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
+    }
+
+    fn pillar(&self, s: &PillarScene) -> Scene<Point, Pillar> {
+        let pillar = Pillar::new(s, self.reflectance(s.pillar.reflectance));
+        self.scene(self.point(&s.light), pillar, &s.floor)
+    }
+
+    fn conic_wall(&self, s: &ConicWallScene) -> Scene<Point, ConicWall> {
+        let wall = ConicWall::new(s, self.reflectance(s.wall.reflectance));
+        self.scene(self.point(&s.light), wall, &s.floor)
     }
 }

@@ -7,6 +7,7 @@
 mod axial;
 mod concave_sphere;
 mod conic_mirrors;
+mod conic_wall;
 mod convex_sphere;
 mod cylinder_cup;
 mod diffuse;
@@ -14,6 +15,7 @@ mod flat_interface;
 mod furnace;
 mod glass_slab;
 mod paraboloid;
+mod pillar;
 mod planar_mirror;
 mod strength;
 mod underwater;
@@ -111,6 +113,8 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
         Kind::Furnace(s) => Arc::new(furnace::form(s)),
         Kind::Underwater(s) => Arc::new(underwater::form(s)),
+        Kind::Pillar(s) => Arc::new(pillar::form(s)),
+        Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
     }
 }
 

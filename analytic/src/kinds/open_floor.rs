@@ -4,6 +4,7 @@
 //! the floor points they would have reached.
 
 use crate::flux::{Bundle, MARGINS, Ray};
+use crate::scene::Floor;
 
 /// A light above the floor.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +30,17 @@ pub struct OpenFloor {
     pub region: [[f64; 2]; 2],
     /// The light.
     pub light: FloorLight,
+}
+
+impl OpenFloor {
+    /// All of a floor.
+    pub fn on(floor: &Floor, light: FloorLight) -> Self {
+        let ([cx, cy], [wx, wy]) = (floor.center, floor.half_width);
+        OpenFloor {
+            region: [[cx - wx, cx + wx], [cy - wy, cy + wy]],
+            light,
+        }
+    }
 }
 
 impl Bundle for OpenFloor {

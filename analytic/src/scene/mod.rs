@@ -80,6 +80,10 @@ pub enum Kind {
     Furnace(FurnaceScene),
     /// A flat water surface over the floor, light above it and camera below it.
     Underwater(UnderwaterScene),
+    /// A convex vertical mirror on the floor, under a point light.
+    Pillar(PillarScene),
+    /// A vertical wall over an arc of a conic, under a point light.
+    ConicWall(ConicWallScene),
 }
 
 impl Kind {
@@ -97,6 +101,8 @@ impl Kind {
             Kind::ConicMirrors(s) => s,
             Kind::Furnace(s) => s,
             Kind::Underwater(s) => s,
+            Kind::Pillar(s) => s,
+            Kind::ConicWall(s) => s,
         }
     }
 

@@ -15,6 +15,14 @@ pub struct Floor {
     pub albedo: f64,
 }
 
+impl Floor {
+    /// Distance to the farthest point of the floor from (x, y) [m].
+    pub fn farthest(&self, from: [f64; 2]) -> f64 {
+        let [dx, dy] = [0, 1].map(|k| f64::abs(from[k] - self.center[k]) + self.half_width[k]);
+        libm::hypot(dx, dy)
+    }
+}
+
 /// A flat rectangular mirror: reflects on its front, absorbs on its back, occludes from both sides.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
