@@ -306,7 +306,7 @@ fn what_breaks_the_closed_form_or_the_picture_is_refused() {
             "camera",
             "look_at",
             point(0.1, 0.0, 0.6),
-            "does not show the ball",
+            "beside the ball",
         ),
         (
             "dish",
