@@ -4,7 +4,8 @@ use std::path::Path;
 
 use nephroid_analytic::scene::{
     self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
-    Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
+    GlassBall, Kind, LensFront, MirrorPillar, PointLight, RectangleMirror, Ripple, Slab, SphereCap,
+    SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 
@@ -26,6 +27,9 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("underwater", include_str!("../scenes/underwater.toml")),
     ("pillar", include_str!("../scenes/pillar.toml")),
     ("conic-wall", include_str!("../scenes/conic-wall.toml")),
+    ("glass-ball", include_str!("../scenes/glass-ball.toml")),
+    ("ripple-pool", include_str!("../scenes/ripple-pool.toml")),
+    ("lens", include_str!("../scenes/lens.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -99,9 +103,16 @@ kinds! {
     "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
     "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "glass-sphere" => GlassSphere(GlassSphereScene { light: VerticalLight, floor: Floor, glass: GlassBall }),
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
+    "water-waves" => WaterWaves(WaterWavesScene {
+        light: VerticalLight, floor: Floor, water: Water, waves: Vec<Ripple>,
+    }),
+    "stigmatic-refractors" => StigmaticRefractors(StigmaticRefractorsScene {
+        light: VerticalLight, floor: Floor, lens: LensFront,
+    }),
 }
 
 /// The kinds, as an error message lists them.
@@ -182,6 +193,19 @@ const ALLOWED: &[(&str, &str)] = &[
         "pillar",
         "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
     ),
+    (
+        "waves",
+        "a list of tables with amplitude, wave_vector and phase",
+    ),
+    ("amplitude", "a finite number (metres)"),
+    ("wave_vector", "two finite numbers (radians per metre)"),
+    ("phase", "a finite number from -1000 to 1000 (radians)"),
+    (
+        "lens",
+        "a table with defocus, semi_axis, index and half_angle_degrees, and axis if it is not [0, 0]",
+    ),
+    ("defocus", "a finite number from -1e9 to 1e9 (metres)"),
+    ("glass", "a table with center, radius and index"),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),

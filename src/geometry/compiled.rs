@@ -4,8 +4,8 @@ use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
     CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
-    GlassSlabScene, Kind, ParaboloidScene, PillarScene, PlanarMirrorScene, PointLight,
-    UnderwaterScene,
+    GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene, PlanarMirrorScene,
+    PointLight, StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
 };
 
 use super::arc::Arc;
@@ -16,10 +16,13 @@ use super::conic_wall::ConicWall;
 use super::dish::Dish;
 use super::floor::Floor;
 use super::furnace::Furnace;
+use super::glass_ball::GlassBall;
+use super::lens::Lens;
 use super::light::{Directional, Light, Point};
 use super::pillar::Pillar;
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
+use super::ripples::Ripples;
 use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
@@ -98,6 +101,9 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
         Kind::Pillar(s) => visitor.chains(build.pillar(s)),
         Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
+        Kind::GlassSphere(s) => visitor.chains(build.glass_sphere(s)),
+        Kind::WaterWaves(s) => visitor.chains(build.water_waves(s)),
+        Kind::StigmaticRefractors(s) => visitor.chains(build.stigmatic_refractors(s)),
     }
 }
 
@@ -140,6 +146,13 @@ impl Build {
         let elevation = light.elevation_degrees.to_radians();
         Directional {
             travel: DVec3::new(libm::cos(elevation), 0.0, -libm::sin(elevation)),
+            irradiance: self.overrides.light_strength.unwrap_or(light.irradiance),
+        }
+    }
+
+    fn vertical(&self, light: &VerticalLight) -> Directional {
+        Directional {
+            travel: DVec3::NEG_Z,
             irradiance: self.overrides.light_strength.unwrap_or(light.irradiance),
         }
     }
@@ -198,6 +211,18 @@ impl Build {
 
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+
+    fn glass_sphere(&self, s: &GlassSphereScene) -> Scene<Directional, GlassBall> {
+        self.scene(self.vertical(&s.light), GlassBall::new(s), &s.floor)
+    }
+
+    fn water_waves(&self, s: &WaterWavesScene) -> Scene<Directional, Ripples> {
+        self.scene(self.vertical(&s.light), Ripples::new(s), &s.floor)
+    }
+
+    fn stigmatic_refractors(&self, s: &StigmaticRefractorsScene) -> Scene<Directional, Lens> {
+        self.scene(self.vertical(&s.light), Lens::new(s), &s.floor)
     }
 
     fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {

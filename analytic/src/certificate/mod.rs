@@ -11,6 +11,7 @@
 //!
 //! Functions that return an enclosure end in `_enclosed`.
 
+pub mod claims;
 pub mod conic_mirrors;
 pub mod cylinder_cup;
 pub mod diffuse;

@@ -14,11 +14,14 @@ mod diffuse;
 mod flat_interface;
 mod furnace;
 mod glass_slab;
+mod glass_sphere;
 mod paraboloid;
 mod pillar;
 mod planar_mirror;
+mod stigmatic_refractors;
 mod strength;
 mod underwater;
+mod water_waves;
 
 pub use furnace::WallTruth;
 
@@ -115,6 +118,9 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::Underwater(s) => Arc::new(underwater::form(s)),
         Kind::Pillar(s) => Arc::new(pillar::form(s)),
         Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
+        Kind::GlassSphere(s) => Arc::new(glass_sphere::form(s)),
+        Kind::WaterWaves(s) => Arc::new(water_waves::form(s)),
+        Kind::StigmaticRefractors(s) => Arc::new(stigmatic_refractors::form(s)),
     }
 }
 

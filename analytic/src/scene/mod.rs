@@ -84,6 +84,12 @@ pub enum Kind {
     Pillar(PillarScene),
     /// A vertical wall over an arc of a conic, under a point light.
     ConicWall(ConicWallScene),
+    /// A glass ball over the floor, in light that comes straight down.
+    GlassSphere(GlassSphereScene),
+    /// Rippled water over the floor, in light that comes straight down, camera below the water.
+    WaterWaves(WaterWavesScene),
+    /// A lens with its focus near the floor, glass from the lens to the floor.
+    StigmaticRefractors(StigmaticRefractorsScene),
 }
 
 impl Kind {
@@ -103,6 +109,9 @@ impl Kind {
             Kind::Underwater(s) => s,
             Kind::Pillar(s) => s,
             Kind::ConicWall(s) => s,
+            Kind::GlassSphere(s) => s,
+            Kind::WaterWaves(s) => s,
+            Kind::StigmaticRefractors(s) => s,
         }
     }
 
