@@ -154,11 +154,11 @@ const ALLOWED: &[(&str, &str)] = &[
     ("ball", "a table with center, radius and reflectance"),
     (
         "dish",
-        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and center if it is not [0, 0]",
     ),
     (
         "conic",
-        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and center if it is not [0, 0]",
     ),
     ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),

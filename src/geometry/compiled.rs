@@ -199,13 +199,13 @@ impl Build {
 
     fn paraboloid(&self, s: &ParaboloidScene) -> Scene<Point, Dish> {
         let dish = Dish::new(s, self.reflectance(s.dish.reflectance));
-        let light = self.focal(&s.light, s.dish.axis, s.dish.focus_z());
+        let light = self.focal(&s.light, s.dish.center, s.dish.focus_z());
         self.scene(light, dish, &s.floor)
     }
 
     fn conic_mirrors(&self, s: &ConicMirrorsScene) -> Scene<Point, Conic> {
         let conic = Conic::new(s, self.reflectance(s.conic.reflectance));
-        let light = self.focal(&s.light, s.conic.axis, s.conic.light_z());
+        let light = self.focal(&s.light, s.conic.center, s.conic.light_z());
         self.scene(light, conic, &s.floor)
     }
 
