@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Camera, ConicArc, DirectionalLight, Entry, Floor, Kind, MirrorPillar,
-    PointLight, RectangleMirror, Slab, Water,
+    self, ArcWall, Camera, ConicArc, DirectionalLight, Entry, Floor, GlassCylinder, Kind,
+    MirrorPillar, MirrorWedge, PointLight, RectangleMirror, Slab, Water,
 };
 use serde::Deserialize;
 
@@ -19,6 +19,8 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("slab", include_str!("../scenes/slab.toml")),
     ("pillar", include_str!("../scenes/pillar.toml")),
     ("conic-wall", include_str!("../scenes/conic-wall.toml")),
+    ("glass-pillar", include_str!("../scenes/glass-pillar.toml")),
+    ("corner", include_str!("../scenes/corner.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -88,6 +90,8 @@ kinds! {
     "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
+    "glass-pillar" => GlassPillar(GlassPillarScene { light: DirectionalLight, floor: Floor, pillar: GlassCylinder }),
+    "planar-chains" => PlanarChains(PlanarChainsScene { light: PointLight, floor: Floor, wedge: MirrorWedge }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
 }
 
@@ -156,6 +160,11 @@ const ALLOWED: &[(&str, &str)] = &[
     (
         "half_arc_degrees",
         "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
+    ),
+    ("wedge", "a table with divisor and reflectance"),
+    (
+        "divisor",
+        "a whole number from 1 to 8: the wedge has the angle π/divisor",
     ),
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("axis", "two finite numbers: a direction of any length"),

@@ -122,6 +122,17 @@ impl PathClass {
         }
     }
 
+    /// `L ... D E` with these interactions on the light's side, in the order of the light (at most [`MAX_CHAIN`]).
+    pub const fn caustic(light: &[Specular]) -> Self {
+        let mut class = Self::new(light.len(), 0);
+        let mut i = 0;
+        while i < class.light.length as usize {
+            class.light.letters[i] = Some(light[i]);
+            i += 1;
+        }
+        class
+    }
+
     /// Number of edges from the light to the eye.
     pub const fn edges(&self) -> usize {
         self.light.len() + self.eye.len() + self.diffuse as usize + 1

@@ -3,13 +3,15 @@
 use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConicWallScene, CylinderCupScene, DiffuseScene, DirectionalLight, Entry,
-    FlatInterfaceScene, GlassSlabScene, Kind, PillarScene, PlanarMirrorScene, PointLight,
+    FlatInterfaceScene, GlassPillarScene, GlassSlabScene, Kind, PillarScene, PlanarChainsScene,
+    PlanarMirrorScene, PointLight,
 };
 
 use super::arc::Arc;
 use super::chains::Chains;
 use super::conic_wall::ConicWall;
 use super::floor::Floor;
+use super::glass_pillar::GlassPillar;
 use super::light::{Directional, Light, Point};
 use super::pillar::Pillar;
 use super::pinhole::Pinhole;
@@ -18,6 +20,7 @@ use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
 use super::water::Water;
+use super::wedge::Wedge;
 
 /// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
 pub enum Compiled {
@@ -79,6 +82,8 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::GlassSlab(s) => visitor.chains(build.glass_slab(s)),
         Kind::Pillar(s) => visitor.chains(build.pillar(s)),
         Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
+        Kind::GlassPillar(s) => visitor.chains(build.glass_pillar(s)),
+        Kind::PlanarChains(s) => visitor.chains(build.planar_chains(s)),
     }
 }
 
@@ -159,5 +164,14 @@ impl Build {
     fn conic_wall(&self, s: &ConicWallScene) -> Scene<Point, ConicWall> {
         let wall = ConicWall::new(s, self.reflectance(s.wall.reflectance));
         self.scene(self.point(&s.light), wall, &s.floor)
+    }
+
+    fn glass_pillar(&self, s: &GlassPillarScene) -> Scene<Directional, GlassPillar> {
+        self.scene(self.directional(&s.light), GlassPillar::new(s), &s.floor)
+    }
+
+    fn planar_chains(&self, s: &PlanarChainsScene) -> Scene<Point, Wedge> {
+        let wedge = Wedge::new(s, self.reflectance(s.wedge.reflectance));
+        self.scene(self.point(&s.light), wedge, &s.floor)
     }
 }

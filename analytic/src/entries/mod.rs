@@ -8,8 +8,10 @@ mod conic_wall;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod glass_pillar;
 mod glass_slab;
 mod pillar;
+mod planar_chains;
 mod planar_mirror;
 mod strength;
 
@@ -100,6 +102,8 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
         Kind::Pillar(s) => Arc::new(pillar::form(s)),
         Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
+        Kind::GlassPillar(s) => Arc::new(glass_pillar::form(s)),
+        Kind::PlanarChains(s) => Arc::new(planar_chains::form(s)),
     }
 }
 

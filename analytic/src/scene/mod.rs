@@ -72,6 +72,10 @@ pub enum Kind {
     Pillar(PillarScene),
     /// A vertical wall over an arc of a conic, under a point light.
     ConicWall(ConicWallScene),
+    /// A vertical glass cylinder on the floor, under a directional light.
+    GlassPillar(GlassPillarScene),
+    /// Floor and point light in a wedge of two vertical mirrors.
+    PlanarChains(PlanarChainsScene),
 }
 
 impl Kind {
@@ -85,6 +89,8 @@ impl Kind {
             Kind::GlassSlab(s) => s,
             Kind::Pillar(s) => s,
             Kind::ConicWall(s) => s,
+            Kind::GlassPillar(s) => s,
+            Kind::PlanarChains(s) => s,
         }
     }
 
