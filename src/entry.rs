@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Camera, ConicArc, DirectionalLight, Entry, Floor, GlassCylinder, Kind,
-    MirrorPillar, MirrorWedge, PointLight, RectangleMirror, Slab, Water,
+    self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
+    GlassCylinder, Kind, MirrorPillar, MirrorWedge, PointLight, RectangleMirror, Slab, SphereCap,
+    SphereWall, Water,
 };
 use serde::Deserialize;
 
@@ -21,6 +22,13 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("conic-wall", include_str!("../scenes/conic-wall.toml")),
     ("glass-pillar", include_str!("../scenes/glass-pillar.toml")),
     ("corner", include_str!("../scenes/corner.toml")),
+    ("dome", include_str!("../scenes/dome.toml")),
+    ("ball", include_str!("../scenes/ball.toml")),
+    ("dish", include_str!("../scenes/dish.toml")),
+    ("ellipsoid", include_str!("../scenes/ellipsoid.toml")),
+    ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
+    ("furnace", include_str!("../scenes/furnace.toml")),
+    ("underwater", include_str!("../scenes/underwater.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -88,11 +96,17 @@ kinds! {
         light: DirectionalLight, floor: Floor, wall: ArcWall,
     }),
     "flat-interface" => FlatInterface(FlatInterfaceScene { light: PointLight, floor: Floor, water: Water }),
+    "concave-sphere" => ConcaveSphere(ConcaveSphereScene { light: PointLight, floor: Floor, cap: SphereCap }),
+    "convex-sphere" => ConvexSphere(ConvexSphereScene { light: PointLight, floor: Floor, ball: Ball }),
+    "paraboloid" => Paraboloid(ParaboloidScene { light: FocalLight, floor: Floor, dish: Dish }),
+    "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
+    "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
     "glass-pillar" => GlassPillar(GlassPillarScene { light: DirectionalLight, floor: Floor, pillar: GlassCylinder }),
     "planar-chains" => PlanarChains(PlanarChainsScene { light: PointLight, floor: Floor, wedge: MirrorWedge }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
+    "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
 }
 
 /// The kinds, as an error message lists them.
@@ -127,13 +141,51 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table with height, half_arc_degrees, reflectance, and radius (circular) or axis, parameter, eccentricity, and focus if it is not [0, 0] (conic)",
+        "a table: height, half_arc_degrees, reflectance and radius (arc) or direction, parameter, eccentricity and focus (conic), or center, radius and albedo (closed sphere)",
     ),
-    ("water", "a table with surface_z and index"),
-    ("slab", "a table with bottom, top and index"),
     (
         "pillar",
         "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
+    ),
+    ("water", "a table with surface_z and index"),
+    ("slab", "a table with bottom, top and index"),
+    ("ball", "a table with center, radius and reflectance"),
+    (
+        "dish",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+    ),
+    (
+        "conic",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+    ),
+    ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
+    ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "focal_length",
+        "a finite number from 1e-9 to 1e9, less than vertex_z (metres)",
+    ),
+    (
+        "inner_radius",
+        "a finite number from 0, less than outer_radius (metres)",
+    ),
+    (
+        "outer_radius",
+        "a finite number greater than inner_radius (metres)",
+    ),
+    ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "eccentricity",
+        "a number from 0 to 10 (wall), from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
+    ),
+    ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
+    ("rim_z", "a finite number greater than 0 (metres)"),
+    (
+        "cap",
+        "a table with center, radius, half_angle_degrees and reflectance",
+    ),
+    (
+        "half_angle_degrees",
+        "a finite number greater than 0, at most 90",
     ),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
@@ -167,9 +219,8 @@ const ALLOWED: &[(&str, &str)] = &[
         "a whole number from 1 to 8: the wedge has the angle π/divisor",
     ),
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
-    ("axis", "two finite numbers: a direction of any length"),
+    ("direction", "two finite numbers: a direction of any length"),
     ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
-    ("eccentricity", "a finite number from 0 to 10"),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

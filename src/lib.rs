@@ -15,6 +15,7 @@ pub mod judge;
 pub mod output;
 pub mod png_output;
 pub mod report;
+pub mod stability;
 pub mod stream;
 pub mod truth;
 pub mod verify;

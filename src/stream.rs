@@ -21,6 +21,10 @@ pub enum Dimension {
     Emission = 1,
     /// Direction at the diffuse vertex of a camera path.
     Direction = 2,
+    /// Direction at the second diffuse vertex of a path.
+    SecondDirection = 3,
+    /// Direction at the third.
+    ThirdDirection = 4,
 }
 
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];

@@ -5,6 +5,7 @@ use nephroid::entry;
 use nephroid::geometry::chains::Chains;
 use nephroid::geometry::compiled::{Visitor, visit};
 use nephroid::geometry::floor::Floor;
+use nephroid::geometry::furnace::Furnace;
 use nephroid::geometry::light::Light;
 use nephroid::geometry::scene::{Overrides, Scene};
 use nephroid::geometry::specular::Specular;
@@ -152,6 +153,11 @@ impl Visitor for NothingInTheWay {
         }
         let towards = eye + scene.light.towards(eye).0;
         vec3(towards.x, towards.y, towards.z)
+    }
+
+    fn furnace(self, scene: Furnace) -> Vec3<f64> {
+        let p = scene.light.position;
+        vec3(p.x, p.y, p.z)
     }
 }
 

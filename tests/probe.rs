@@ -76,7 +76,63 @@ fn the_cup_knows_its_fold() {
     assert_eq!(caustic[1]["roots"], 3);
     assert!(caustic[1]["singularity"].as_f64().expect("a distance") < 0.1);
     // On the cusp itself there is no bound, and JSON has no infinity.
-    assert!(caustic[2]["error_bound"].is_null());
+    assert!(caustic[2]["error_bound"].is_null() && caustic[2]["E"].is_null());
+    assert_eq!(caustic[2]["state"], "singular");
+    assert_eq!(caustic[0]["state"], "regular");
+}
+
+/// The nephroid has the radius of curvature 3/4 a |sin φ| where the ray of φ touches it, and the two rays that touch it
+/// next to a point at distance d inside have the spread 2 √(2 ρ d): A = E0 R sin ε cos φ √(a/(3/2 sin φ)).
+#[test]
+fn a_fold_has_a_place_and_a_strength() {
+    let a = 1.2;
+    let angles = [0.4_f64, 0.5, 0.8];
+    let mut csv = "x,y,z\n".to_owned();
+    for phi in angles {
+        let (s, c) = libm::sincos(phi);
+        let (sin_2, cos_2) = libm::sincos(2.0 * phi);
+        let tau = 0.5 * a * c;
+        let (x, y) = (a * c - tau * cos_2, a * s - tau * sin_2);
+        // The normal of the last leg, away from the bright side.
+        for d in [0.0, 0.01, -0.01] {
+            csv += &format!("{},{},0\n", x + d * sin_2, y - d * cos_2);
+        }
+    }
+    let output = probe("fold", "tests/scenes/cup.toml", &csv, true);
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let answers = answer["answers"].as_array().expect("answers");
+    let caustic: Vec<&Value> = answers.iter().filter(|a| a["class"] == "LSDE").collect();
+    assert_eq!(caustic.len(), 9);
+    for (three, phi) in caustic.chunks(3).zip(angles) {
+        let (s, c) = libm::sincos(phi);
+        let expected = 3.4 * 0.9 * 0.5 * c * libm::sqrt(a / (1.5 * s));
+        for (answer, d) in three.iter().zip([0.0, 0.01, 0.01]) {
+            let number = |key: &str| answer[key].as_f64().unwrap_or(f64::NAN);
+            assert!((number("singularity") - d).abs() <= 1e-8, "{answer}");
+            assert_eq!(answer["singularity_type"], "fold");
+            assert!(
+                (number("strength") / expected - 1.0).abs() <= 1e-4,
+                "{answer} {expected}"
+            );
+        }
+        assert_eq!(three[0]["state"], "singular", "{}", three[0]);
+        assert_eq!(three[1]["state"], "regular");
+        // Two roots more on one side than on the other.
+        let roots = |k: usize| three[k]["roots"].as_u64().expect("roots");
+        assert_eq!(roots(1).abs_diff(roots(2)), 2);
+    }
+    let text = probe("fold-text", "tests/scenes/cup.toml", &csv, false);
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(
+        text.starts_with(
+            "id,class,E,L,error_bound,roots,singularity,singularity_type,strength,state"
+        )
+    );
+    assert!(
+        text.lines()
+            .any(|l| l.starts_with("1,LSDE,singular,singular,inf,")),
+        "{text}"
+    );
 }
 
 #[test]

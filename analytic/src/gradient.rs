@@ -261,6 +261,11 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
     fn is_finite(self) -> bool {
         self.value.is_finite()
     }
+    // Not the product: the square of an interval is narrower.
+    #[inline(always)]
+    fn squared(self) -> Self {
+        self.chain(self.value.squared(), S::TWO * self.value)
+    }
 }
 
 #[cfg(test)]

@@ -5,8 +5,11 @@
 
 pub mod bandwidth;
 pub mod camera;
+pub mod certificate;
 pub mod class;
-mod double_double;
+mod decimal;
+pub mod double_double;
+pub mod enclosure;
 pub mod entries;
 pub mod flux;
 pub mod gradient;

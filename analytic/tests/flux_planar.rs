@@ -73,7 +73,6 @@ fn direct_light_agrees_with_polygons() {
     let image = FluxImage::new(&camera(64), &floor, vec![vec![Arc::new(light)]]);
     let truth = PixelTruth::new(&entry).unwrap();
     let (difference, excess) = worst(&rows(&image, 64, 1e-11), &truth, 0);
-    println!("{difference:e} {excess:e}");
     assert!(
         difference < 1e-10 && excess < 1e-12,
         "{difference:e} {excess:e}"
@@ -132,7 +131,6 @@ fn mirrored_light_agrees_with_polygons() {
     let image = FluxImage::new(&camera(64), &floor, vec![vec![Arc::new(Wall)]]);
     let truth = PixelTruth::new(&entry).unwrap();
     let (difference, excess) = worst(&rows(&image, 64, 1e-11), &truth, 1);
-    println!("{difference:e} {excess:e}");
     assert!(
         difference < 1e-10 && excess < 1e-12,
         "{difference:e} {excess:e}"

@@ -20,6 +20,10 @@ pub struct Args {
     /// Exit with 1 if any relative difference is larger than this or, near a singularity, than its conditioning allows.
     #[arg(long, value_name = "T", value_parser = tolerance)]
     tolerance: Option<f64>,
+    /// Add to every value of a reference file an interval that provably contains the true one, from the decimals in the
+    /// file, and whether the number of rays behind it is proven.
+    #[arg(long)]
+    certify: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -36,14 +40,18 @@ fn tolerance(text: &str) -> Result<f64, String> {
 pub fn run(args: &Args) -> Result<u8, Error> {
     let file = args.file.display().to_string();
     let text = std::fs::read_to_string(&args.file).map_err(|e| Error::read(&file, e))?;
-    let report = evaluate::evaluate(&file, &text)?;
+    let report = if args.certify {
+        evaluate::evaluate_certified(&file, &text)?
+    } else {
+        evaluate::evaluate(&file, &text)?
+    };
     let passed = args
         .tolerance
         .map(|t| report.rows().all(|p| p.row.passes(t)));
     let shown = if args.json {
-        as_json(&report, args.tolerance, passed).to_string()
+        as_json(&report, args, passed).to_string()
     } else {
-        as_text(&report, args.tolerance, passed)
+        as_text(&report, args, passed)
     };
     super::print(&shown);
     Ok(match passed {
@@ -61,7 +69,7 @@ fn finite(value: f64) -> Value {
     }
 }
 
-fn row_json(row: &Row, tolerance: Option<f64>) -> Value {
+fn row_json(row: &Row, args: &Args) -> Value {
     let mut object = Map::new();
     object.insert("value".into(), finite(row.value));
     object.insert("error_bound".into(), finite(row.error_bound));
@@ -70,15 +78,23 @@ fn row_json(row: &Row, tolerance: Option<f64>) -> Value {
     object.insert("expected".into(), row.expected.map_or(Value::Null, finite));
     let difference = row.relative_difference.map_or(Value::Null, finite);
     object.insert("relative_difference".into(), difference);
-    let allowed = row.allowed(tolerance.unwrap_or(DEFAULT_TOLERANCE));
+    let allowed = row.allowed(args.tolerance.unwrap_or(DEFAULT_TOLERANCE));
     object.insert("allowed".into(), finite(allowed));
+    if args.certify {
+        let ends = row
+            .certificate
+            .map_or(Value::Null, |c| json!([finite(c.low), finite(c.high)]));
+        object.insert("enclosure".into(), ends);
+        let certified = row.certificate.is_some_and(|c| c.certified);
+        object.insert("certified".into(), json!(certified));
+    }
     Value::Object(object)
 }
 
 /// The tolerance of the column `allowed` where the command line has none.
 const DEFAULT_TOLERANCE: f64 = 1e-12;
 
-fn as_json(report: &Report, tolerance: Option<f64>, passed: Option<bool>) -> Value {
+fn as_json(report: &Report, args: &Args, passed: Option<bool>) -> Value {
     let configurations: Vec<_> = report
         .configurations
         .iter()
@@ -90,7 +106,7 @@ fn as_json(report: &Report, tolerance: Option<f64>, passed: Option<bool>) -> Val
                     let values: Map<_, _> = item
                         .rows
                         .iter()
-                        .map(|r| (r.key.clone(), row_json(r, tolerance)))
+                        .map(|r| (r.key.clone(), row_json(r, args)))
                         .collect();
                     let roots: Map<_, _> =
                         item.roots.iter().map(|(c, n)| (c.clone(), json!(n))).collect();
@@ -115,7 +131,7 @@ fn as_json(report: &Report, tolerance: Option<f64>, passed: Option<bool>) -> Val
         "schema": "nephroid-evaluate/1",
         "file_schema": report.schema,
         "scene": report.scene,
-        "tolerance": tolerance,
+        "tolerance": args.tolerance,
         "passed": passed,
         "compared": compared(report),
         "configurations": configurations,
@@ -132,7 +148,8 @@ fn compared(report: &Report) -> usize {
         .count()
 }
 
-fn as_text(report: &Report, tolerance: Option<f64>, passed: Option<bool>) -> String {
+fn as_text(report: &Report, args: &Args, passed: Option<bool>) -> String {
+    let tolerance = args.tolerance;
     let limit = tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let mut lines = vec![format!(
         "{:<12} {:<26} {:>24} {:>9} {:>10} {:>9}",
@@ -149,6 +166,13 @@ fn as_text(report: &Report, tolerance: Option<f64>, passed: Option<bool>) -> Str
             row.error_bound,
             row.allowed(limit),
         );
+        if args.certify {
+            line += &match row.certificate {
+                Some(c) if c.certified => format!("  [{:e}, {:e}]", c.low, c.high),
+                Some(c) => format!("  [{:e}, {:e}] undecided", c.low, c.high),
+                None => "  not certified".to_owned(),
+            };
+        }
         if row.near_singularity {
             line += &format!(
                 "  near a singularity, conditioning {:.1e}",
@@ -179,7 +203,41 @@ fn as_text(report: &Report, tolerance: Option<f64>, passed: Option<bool>) -> Str
         }
         _ => lines.push("no expected values to compare with".to_owned()),
     }
+    if args.certify {
+        lines.push(certified(report));
+    }
     lines.join("\n")
+}
+
+/// How many values are certified, and the widest of the intervals.
+fn certified(report: &Report) -> String {
+    let all: Vec<_> = report.rows().collect();
+    let proven: Vec<_> = all
+        .iter()
+        .filter_map(|p| Some((p, p.row.certificate.filter(|c| c.certified)?)))
+        .collect();
+    let mut line = format!("{} of {} values certified", proven.len(), all.len());
+    let widest = proven
+        .iter()
+        .filter(|(p, _)| !p.row.near_singularity)
+        .map(|(p, c)| (p, relative_width(c.low, c.high)))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((place, width)) = widest {
+        line += &format!(
+            ", the widest interval away from singularities {width:.1e} relative ({} {})",
+            place.item, place.row.key
+        );
+    }
+    line
+}
+
+/// Width over the smaller modulus; 0 for a single number.
+fn relative_width(low: f64, high: f64) -> f64 {
+    if low == high {
+        0.0
+    } else {
+        (high - low) / f64::abs(low).min(f64::abs(high))
+    }
 }
 
 fn summary(what: &str, worst: Placed<'_>) -> String {

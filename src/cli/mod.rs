@@ -7,6 +7,7 @@ mod list;
 mod probe;
 mod render;
 mod run;
+mod stability;
 mod verify;
 
 use std::process::ExitCode;
@@ -38,6 +39,7 @@ enum Command {
     Render(render::Args),
     Run(run::Args),
     Golden(golden::Args),
+    Stability(stability::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -53,6 +55,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Golden(args) => golden::run(&args),
+        Command::Stability(args) => stability::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

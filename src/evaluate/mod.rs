@@ -8,6 +8,7 @@
 //! Each other schema is one more arm of [`evaluate`].
 
 mod bandwidth;
+mod certify;
 mod conic_mirrors;
 mod cylinder_cup;
 mod diffuse;
@@ -27,6 +28,7 @@ use nephroid_analytic::kinds::{Estimate, rounding_error};
 use serde_json::Value;
 
 use crate::error::Error;
+pub use crate::evaluate::certify::Certificate;
 use crate::evaluate::reading::Object;
 pub use crate::evaluate::report::{Configuration, Item, Placed, Report, Row};
 
@@ -54,6 +56,16 @@ pub fn evaluate(file: &str, text: &str) -> Result<Report, Error> {
             Err(top.error("schema", &format!("`{other}`"), &allowed))
         }
     }
+}
+
+/// As [`evaluate`], with a [`Certificate`] for every value of a file of schema [`REFERENCE`] that has one.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn evaluate_certified(file: &str, text: &str) -> Result<Report, Error> {
+    let mut report = evaluate(file, text)?;
+    certify::certify(text, &mut report);
+    Ok(report)
 }
 
 /// Evaluates a file of schema [`REFERENCE`].

@@ -3,6 +3,7 @@
 use nephroid_analytic::kinds::Estimate;
 
 use crate::error::Error;
+use crate::evaluate::certify::Certificate;
 use crate::evaluate::reading::Object;
 
 /// Relative size below which an expected zero counts as met.
@@ -29,6 +30,8 @@ pub struct Row {
     pub last_digit: f64,
     /// |value - expected|/|expected|, or |value| over the configuration's largest value where 0 is expected.
     pub relative_difference: Option<f64>,
+    /// What is proven of the true value, where that was asked for.
+    pub certificate: Option<Certificate>,
 }
 
 impl Row {
@@ -198,6 +201,7 @@ impl<'a> Rows<'a> {
             expected,
             last_digit: 0.0,
             relative_difference: None,
+            certificate: None,
         });
     }
 

@@ -2,15 +2,20 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    Camera, ConicWallScene, CylinderCupScene, DiffuseScene, DirectionalLight, Entry,
-    FlatInterfaceScene, GlassPillarScene, GlassSlabScene, Kind, PillarScene, PlanarChainsScene,
-    PlanarMirrorScene, PointLight,
+    Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
+    CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
+    GlassPillarScene, GlassSlabScene, Kind, ParaboloidScene, PillarScene, PlanarChainsScene,
+    PlanarMirrorScene, PointLight, UnderwaterScene,
 };
 
 use super::arc::Arc;
+use super::ball::Ball;
 use super::chains::Chains;
+use super::conic::Conic;
 use super::conic_wall::ConicWall;
+use super::dish::Dish;
 use super::floor::Floor;
+use super::furnace::Furnace;
 use super::glass_pillar::GlassPillar;
 use super::light::{Directional, Light, Point};
 use super::pillar::Pillar;
@@ -19,6 +24,8 @@ use super::rectangle::Rectangle;
 use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
+use super::sphere_cap::SphereCap;
+use super::underwater::Underwater;
 use super::water::Water;
 use super::wedge::Wedge;
 
@@ -69,6 +76,9 @@ pub trait Visitor {
 
     /// Chains of specular interactions between light and floor, the floor seen directly.
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output;
+
+    /// A closed diffuse sphere.
+    fn furnace(self, scene: Furnace) -> Self::Output;
 }
 
 /// Compiles a validated entry of any kind.
@@ -84,6 +94,14 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
         Kind::GlassPillar(s) => visitor.chains(build.glass_pillar(s)),
         Kind::PlanarChains(s) => visitor.chains(build.planar_chains(s)),
+        Kind::ConcaveSphere(s) => visitor.chains(build.concave_sphere(s)),
+        Kind::ConvexSphere(s) => visitor.chains(build.convex_sphere(s)),
+        Kind::Paraboloid(s) => visitor.chains(build.paraboloid(s)),
+        Kind::ConicMirrors(s) => visitor.chains(build.conic_mirrors(s)),
+        Kind::Furnace(s) => {
+            visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
+        }
+        Kind::Underwater(s) => visitor.chains(build.underwater(s)),
     }
 }
 
@@ -152,6 +170,36 @@ impl Build {
         self.scene(self.point(&s.light), Water::new(&s.water), &s.floor)
     }
 
+    fn concave_sphere(&self, s: &ConcaveSphereScene) -> Scene<Point, SphereCap> {
+        let cap = SphereCap::new(s, self.reflectance(s.cap.reflectance));
+        self.scene(self.point(&s.light), cap, &s.floor)
+    }
+
+    fn convex_sphere(&self, s: &ConvexSphereScene) -> Scene<Point, Ball> {
+        let ball = Ball::new(s, self.reflectance(s.ball.reflectance));
+        self.scene(self.point(&s.light), ball, &s.floor)
+    }
+
+    /// The light at a mirror's focus, over the point where its axis meets the floor.
+    fn focal(&self, light: &FocalLight, [x, y]: [f64; 2], z: f64) -> Point {
+        Point {
+            position: DVec3::new(x, y, z),
+            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+        }
+    }
+
+    fn paraboloid(&self, s: &ParaboloidScene) -> Scene<Point, Dish> {
+        let dish = Dish::new(s, self.reflectance(s.dish.reflectance));
+        let light = self.focal(&s.light, s.dish.axis, s.dish.focus_z());
+        self.scene(light, dish, &s.floor)
+    }
+
+    fn conic_mirrors(&self, s: &ConicMirrorsScene) -> Scene<Point, Conic> {
+        let conic = Conic::new(s, self.reflectance(s.conic.reflectance));
+        let light = self.focal(&s.light, s.conic.axis, s.conic.light_z());
+        self.scene(light, conic, &s.floor)
+    }
+
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
     }
@@ -173,5 +221,9 @@ impl Build {
     fn planar_chains(&self, s: &PlanarChainsScene) -> Scene<Point, Wedge> {
         let wedge = Wedge::new(s, self.reflectance(s.wedge.reflectance));
         self.scene(self.point(&s.light), wedge, &s.floor)
+    }
+
+    fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
+        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
     }
 }

@@ -6,20 +6,27 @@
 //! depend on the width of the vectors.
 
 pub mod arc;
+pub mod ball;
 pub mod chains;
 pub mod compiled;
+pub mod conic;
 pub mod conic_wall;
 pub mod dielectric;
+pub mod dish;
 pub mod emission;
 pub mod floor;
+pub mod furnace;
 pub mod glass_pillar;
 pub mod light;
 pub mod pillar;
 pub mod pinhole;
+pub mod quadratic;
 pub mod rectangle;
 pub mod scene;
 pub mod slab;
 pub mod specular;
+pub mod sphere_cap;
 pub mod turn;
+pub mod underwater;
 pub mod water;
 pub mod wedge;

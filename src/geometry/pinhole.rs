@@ -65,13 +65,24 @@ impl Pinhole {
     /// behind the camera or outside its film.
     #[inline(always)]
     pub fn project_floor(&self, point: DVec3) -> (f64, f64, f64) {
+        self.projected(point, self.position.z)
+    }
+
+    /// The same for a point of a surface with this unit normal, and per unit of its area; 0 if it faces away.
+    pub fn project(&self, point: DVec3, normal: DVec3) -> (f64, f64, f64) {
+        self.projected(point, normal.dot(self.position - point))
+    }
+
+    /// Column, row and density of a point whose tangent plane is `height` below the camera.
+    #[inline(always)]
+    fn projected(&self, point: DVec3, height: f64) -> (f64, f64, f64) {
         let d = point - self.position;
         let depth = d.dot(self.forward);
         let scale = 1.0 / (depth * self.pixel);
         let u = 0.5 * self.columns + d.dot(self.right) * scale;
         let v = 0.5 * self.rows - d.dot(self.up) * scale;
         let seen = (depth > 0.0) & (u >= 0.0) & (u < self.columns) & (v >= 0.0) & (v < self.rows);
-        let density = self.position.z * scale * scale / depth;
+        let density = height * scale * scale / depth;
         (u, v, if seen { density } else { 0.0 })
     }
 }

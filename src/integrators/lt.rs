@@ -14,6 +14,7 @@ use crate::film::Film;
 use crate::geometry::chains::Chains;
 use crate::geometry::compiled::{Visitor, visit};
 use crate::geometry::emission::Emitter;
+use crate::geometry::furnace::Furnace;
 use crate::geometry::light::Light;
 use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
@@ -21,7 +22,8 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{add, select};
 use super::chains::LightChains;
-use super::plan::{not_sampled, plan_of};
+use super::furnace::LightWalks;
+use super::plan::{not_sampled, plan_of, walk_plan};
 use super::settings::{Defect, Settings};
 use super::{ClassPlan, Integrator, Plan, Prepared, Technique, Treatment};
 
@@ -51,6 +53,9 @@ impl Integrator for Lt {
 
     fn plan(&self, entry: &Entry) -> Plan {
         plan_of(entry, |class| {
+            if class.diffuse > 1 {
+                return walk_plan(class, Technique::LightTracing);
+            }
             if class.eye.is_empty() {
                 ClassPlan {
                     class,
@@ -88,6 +93,10 @@ impl Visitor for Prepare {
 
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
         Box::new(LightChains::new(scene, self.defect))
+    }
+
+    fn furnace(self, scene: Furnace) -> Box<dyn Prepared> {
+        Box::new(LightWalks::new(scene, self.defect))
     }
 }
 

@@ -7,6 +7,7 @@
 pub mod accumulate;
 mod camera_paths;
 mod chains;
+mod furnace;
 pub mod kernel;
 mod lt;
 mod photon_grid;

@@ -39,3 +39,19 @@ pub(super) fn not_sampled(class: PathClass, reason: &str) -> ClassPlan {
         reason: reason.to_owned(),
     }
 }
+
+/// The plan for light that bounces between diffuse walls.
+pub(super) fn walk_plan(class: PathClass, technique: Technique) -> ClassPlan {
+    let end = match technique {
+        Technique::LightTracing => "connected to the pinhole from its last one",
+        _ => "with next event estimation at its last one",
+    };
+    ClassPlan {
+        class,
+        treatment: Treatment::Exact(technique),
+        reason: format!(
+            "a walk of {} diffuse vertices by the cosine law, {end}",
+            class.diffuse
+        ),
+    }
+}

@@ -9,6 +9,7 @@ use nephroid_analytic::scene::Entry;
 use crate::film::Film;
 use crate::geometry::chains::Chains;
 use crate::geometry::compiled::{Visitor, visit};
+use crate::geometry::furnace::Furnace;
 use crate::geometry::light::Light;
 use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
@@ -16,9 +17,10 @@ use crate::stream::{BLOCK, Lanes, Stream, zeros};
 
 use super::camera_paths::{CameraPaths, DIRECT};
 use super::chains::DirectLight;
-use super::plan::{next_event_plan, not_sampled, plan_of};
+use super::furnace::CameraWalks;
+use super::plan::{next_event_plan, not_sampled, plan_of, walk_plan};
 use super::settings::{Defect, Settings};
-use super::{Integrator, Plan, Prepared};
+use super::{Integrator, Plan, Prepared, Technique};
 
 /// Path tracing with next event estimation.
 pub struct Pt {
@@ -43,6 +45,9 @@ impl Integrator for Pt {
 
     fn plan(&self, entry: &Entry) -> Plan {
         plan_of(entry, |class| {
+            if class.diffuse > 1 {
+                return walk_plan(class, Technique::NextEvent);
+            }
             next_event_plan(class).unwrap_or_else(|| {
                 not_sampled(
                     class,
@@ -75,6 +80,10 @@ impl Visitor for Prepare {
 
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
         Box::new(DirectLight::new(scene, self.defect))
+    }
+
+    fn furnace(self, scene: Furnace) -> Box<dyn Prepared> {
+        Box::new(CameraWalks::new(scene, self.defect))
     }
 }
 

@@ -4,16 +4,25 @@
 //! `L S+ D E`. (The water of a `flat-interface` entry is entered before the floor is seen; its floor carries `LSDE`
 //! alone.) For images, a form also tells the light of each class as bundles of rays; see [`crate::flux`].
 
+mod axial;
+mod concave_sphere;
+mod conic_mirrors;
 mod conic_wall;
+mod convex_sphere;
 mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
+mod furnace;
 mod glass_pillar;
 mod glass_slab;
+mod paraboloid;
 mod pillar;
 mod planar_chains;
 mod planar_mirror;
 mod strength;
+mod underwater;
+
+pub use furnace::WallTruth;
 
 use core::fmt::Debug;
 use std::sync::Arc;
@@ -104,6 +113,12 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
         Kind::GlassPillar(s) => Arc::new(glass_pillar::form(s)),
         Kind::PlanarChains(s) => Arc::new(planar_chains::form(s)),
+        Kind::ConcaveSphere(s) => Arc::new(concave_sphere::form(s)),
+        Kind::ConvexSphere(s) => Arc::new(convex_sphere::form(s)),
+        Kind::Paraboloid(s) => Arc::new(paraboloid::form(s)),
+        Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
+        Kind::Furnace(s) => Arc::new(furnace::form(s)),
+        Kind::Underwater(s) => Arc::new(underwater::form(s)),
     }
 }
 

@@ -1,35 +1,53 @@
 //! Where a margin's zero crosses a chart, and the charts that end at it.
 
-use crate::flux::chart::Chart;
-use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers};
+use crate::flux::chart::{Chart, Edge};
+use crate::flux::poly::{Chebyshev, Grid, N, chebyshev, nodes, powers, transposed, zeros};
 
 /// What to do with a chart in which a margin may change sign.
 #[derive(Debug)]
 pub enum Border {
     /// Nothing can be said: halve along this axis.
     Halve(usize),
-    /// The parts where the margin is not negative; `false` marks those for which that is not yet known.
-    Parts(Vec<(Chart, bool)>),
+    /// The parts where the margin may be non-negative.
+    Parts(Vec<(Chart, Part)>),
 }
 
-/// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients.
+/// What is known of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The margin is not negative.
+    Whole,
+    /// The margin is not negative, and zero at one end.
+    Cut(Edge),
+    /// Nothing.
+    Unknown,
+}
+
+/// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients;
+/// `size` is the scale of the margin's rounding.
 pub fn find(
     chart: &Chart,
     g: &Grid,
     c: Option<&Chebyshev>,
     depth: u32,
+    size: f64,
     value: &dyn Fn(&Chart, [f64; 2]) -> f64,
 ) -> Border {
     let axis = match c.map_or_else(|| by_signs(g, depth), monotone) {
         Ok(axis) => axis,
         Err(axis) => return Border::Halve(axis),
     };
+    // In a small chart rounding shows in the curve.
+    let slope = c.map_or(f64::INFINITY, |c| {
+        f64::abs(if axis == 0 { c.c[0][1] } else { c.c[1][0] })
+    });
+    let rounding = 8.0 * f64::EPSILON * size;
     // Rounding must not cut a border that coincides with the chart's own.
     let scale = g.iter().flatten().map(|v| v.abs());
     let scale = scale.filter(|v| v.is_finite()).fold(0.0, f64::max);
     let at = |s: f64, t: f64| {
         let p = if axis == 0 { [t, s] } else { [s, t] };
-        value(chart, p) + 1e-13 * scale
+        value(chart, p) + 1e-13 * scale + rounding
     };
     let class = |s: f64| [at(s, -1.0) >= 0.0, at(s, 1.0) >= 0.0];
 
@@ -37,25 +55,40 @@ pub fn find(
     let mut points = vec![-1.0];
     points.extend(nodes());
     points.push(1.0);
+    // The curve can leave through a side and come back between two of them: look where the side's function turns.
+    for side in [-1.0, 1.0] {
+        let c = powers(&chebyshev(&nodes().map(|s| at(s, side))));
+        let slope = core::array::from_fn(|k| match c.get(k + 1) {
+            Some(c) => (k + 1) as f64 * c,
+            None => 0.0,
+        });
+        points.extend(zeros(&slope).as_slice());
+    }
+    points.sort_by(f64::total_cmp);
     let mut cuts = vec![-1.0];
     for pair in points.windows(2) {
-        let (mut low, mut high) = (pair[0], pair[1]);
-        let first = class(low);
-        if first == class(high) {
-            continue;
-        }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if !(middle > low && middle < high) {
+        let mut from = pair[0];
+        let (mut first, last) = (class(from), class(pair[1]));
+        // Between two samples both ends can change, one after the other.
+        for _ in 0..4 {
+            if first == last {
                 break;
             }
-            if class(middle) == first {
-                low = middle;
-            } else {
-                high = middle;
+            let (mut low, mut high) = (from, pair[1]);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if !(middle > low && middle < high) {
+                    break;
+                }
+                if class(middle) == first {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
             }
+            cuts.push(high);
+            (from, first) = (high, class(high));
         }
-        cuts.push(high);
     }
     cuts.push(1.0);
     let mut parts = Vec::new();
@@ -69,17 +102,16 @@ pub fn find(
         let part = chart.part(range);
         match class(0.5 * (low + high)) {
             [false, false] => {}
-            [true, true] => parts.push((part, true)),
+            [true, true] => parts.push((part, Part::Whole)),
             [_, above] => {
                 let s = |x: f64| 0.5 * (low + high) + 0.5 * (high - low) * x;
                 let curve = nodes().map(|x| crossing(|t| at(s(x), t), above));
                 let c = chebyshev(&curve);
-                if c[N - 1].abs() + c[N - 2].abs() < 3e-13 {
-                    parts.push((part.cut(axis, above, powers(&c)), true));
-                } else if cuts.len() > 2 {
-                    parts.push((part, false));
+                if c[N - 1].abs() + c[N - 2].abs() < 3e-13 + 4.0 * rounding / slope {
+                    let edge = Edge { axis, above };
+                    parts.push((part.cut(edge, powers(&c)), Part::Cut(edge)));
                 } else {
-                    return Border::Halve(1 - axis);
+                    parts.extend(part.halves(1 - axis).map(|half| (half, Part::Unknown)));
                 }
             }
         }
@@ -117,11 +149,9 @@ fn by_signs(g: &Grid, depth: u32) -> Result<usize, usize> {
     let mut ordered = [true; 2];
     for axis in 0..2 {
         let (mut up, mut down) = (0, 0);
-        for line in 0..N {
-            let sign = |k: usize| {
-                let v = if axis == 0 { g[line][k] } else { g[k][line] };
-                v >= 0.0
-            };
+        let lines = if axis == 0 { *g } else { transposed(g) };
+        for line in lines {
+            let sign = |k: usize| line[k] >= 0.0;
             let here = |wanted: bool| {
                 (1..N)
                     .filter(|&k| sign(k - 1) != sign(k) && sign(k) == wanted)

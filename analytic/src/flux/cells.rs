@@ -8,8 +8,8 @@
 use core::f64::consts::PI;
 use std::collections::VecDeque;
 
-use crate::flux::border::{self, Border};
-use crate::flux::chart::Chart;
+use crate::flux::border::{self, Border, Part};
+use crate::flux::chart::{Chart, Edge};
 use crate::flux::lens::Lens;
 use crate::flux::poly::{Chebyshev, Grid, N, Polynomial, nodes};
 use crate::flux::{Bundle, MARGINS};
@@ -69,46 +69,71 @@ pub struct Piece {
 /// Everything the cutting needs.
 pub struct Cutter<'a> {
     bundle: &'a dyn Bundle,
-    lens: &'a Lens,
+    pub(super) lens: &'a Lens,
     floor: &'a Floor,
-    /// Total below which a piece may be left out, into the error.
-    negligible: f64,
-    queue: VecDeque<Task>,
+    /// About the radiance of a pixel, at least.
+    pub(super) typical: f64,
+    /// Largest absolute value of each condition in a first look: the scale of its rounding.
+    scales: [f64; CONDITIONS],
+    pub(super) queue: VecDeque<Task>,
     pieces: Vec<Piece>,
 }
 
-struct Task {
-    chart: Chart,
+/// A piece to be cut further.
+#[derive(Clone, Debug)]
+pub(super) struct Task {
+    pub(super) chart: Chart,
     /// Conditions known to hold.
-    settled: u32,
-    depth: u32,
+    pub(super) settled: u32,
+    pub(super) depth: u32,
+    /// The end that is a border, and how often the piece has been halved towards it.
+    pub(super) edge: Option<(Edge, u32)>,
+}
+
+impl Task {
+    /// The halves along an axis.
+    pub(super) fn halves(&self, axis: usize) -> [Task; 2] {
+        let [low, high] = self.chart.halves(axis);
+        [(low, true), (high, false)].map(|(chart, low)| Task {
+            chart,
+            settled: self.settled,
+            depth: self.depth + 1,
+            edge: match self.edge {
+                Some((edge, n)) if edge.axis == axis => {
+                    (edge.above == low).then_some((edge, n + 1))
+                }
+                other => other,
+            },
+        })
+    }
 }
 
 /// Coarsest cells: 2^this along both axes.
 const FIRST: u32 = 3;
 /// Halvings, at most.
-const DEEPEST: u32 = 64;
-/// Halvings after which samples without light are believed.
+pub(super) const DEEPEST: u32 = 64;
+/// Halvings after which samples without light are believed, where that cannot be proven.
 const DARK: u32 = 10;
 /// Cells looked at, at most.
-const MOST: usize = 150_000;
-/// Largest span of a regular and of a folded cell [pixels].
-const SPAN: [f64; 2] = [12.0, 1.0];
-/// Allowed error of an interpolant, relative to its variation.
-const SMOOTH: f64 = 1e-12;
-
+const MOST: usize = 60_000;
+/// What an interpolant misses, in units of its last two orders: enough for a square root at an end, whose coefficients fall
+/// like 1/k².
+const REMAINDER: f64 = 6.0;
+/// Share of a pixel's radiance that a piece may have when it is left out.
+pub(super) const NEGLIGIBLE: f64 = 1e-12;
 /// Cuts a bundle.
 pub fn cut(bundle: &dyn Bundle, lens: &Lens, floor: &Floor) -> Vec<Piece> {
     let mut cutter = Cutter {
         bundle,
         lens,
         floor,
-        negligible: 0.0,
+        typical: 0.0,
+        scales: [1.0; CONDITIONS],
         queue: VecDeque::new(),
         pieces: Vec::new(),
     };
     let whole = Chart::new(bundle.domain());
-    cutter.negligible = 1e-13 * cutter.rough_total(&whole);
+    cutter.first_look(&whole);
     let step = 2.0 / f64::from(1_u32 << FIRST);
     for j in 0..1 << FIRST {
         for i in 0..1 << FIRST {
@@ -120,6 +145,7 @@ pub fn cut(bundle: &dyn Bundle, lens: &Lens, floor: &Floor) -> Vec<Piece> {
                 chart: whole.part(range),
                 settled: 0,
                 depth: 2 * FIRST,
+                edge: None,
             });
         }
     }
@@ -167,24 +193,39 @@ impl Cutter<'_> {
             && sample.floor.iter().all(|x| x.is_finite())
     }
 
+    /// Whether no point is in the frame, by the interpolants of the floor point.
+    pub(super) fn out_of_frame(&self, x: &Chebyshev, y: &Chebyshev) -> bool {
+        self.lens.frame().iter().any(|line| {
+            let c = x.combined(line.a, y, line.b, line.c);
+            let [p, q] = c.tails();
+            c.c[0][0] < -(c.spread() + REMAINDER * (p + q))
+        })
+    }
+
     fn in_frame(&self, [x, y]: [f64; 2]) -> bool {
         self.lens.frame().iter().all(|l| l.at(x, y) >= 0.0)
     }
 
-    /// Radiance summed over the pixels of the frame, from midpoints.
-    fn rough_total(&self, chart: &Chart) -> f64 {
+    /// Scales, from midpoints.
+    fn first_look(&mut self, chart: &Chart) {
         const M: u32 = 24;
         let at = |k: u32| (2.0 * f64::from(k) + 1.0) / f64::from(M) - 1.0;
         let mut sum = 0.0;
         for j in 0..M {
             for i in 0..M {
                 let sample = self.sample(chart, [at(i), at(j)]);
+                for (scale, g) in self.scales.iter_mut().zip(sample.conditions) {
+                    if f64::abs(g) > *scale && g.is_finite() {
+                        *scale = f64::abs(g);
+                    }
+                }
                 if Self::exists(&sample) && self.in_frame(sample.floor) {
                     sum += sample.flux.abs();
                 }
             }
         }
-        sum * 4.0 / f64::from(M * M)
+        let pixels = f64::from(self.lens.width) * f64::from(self.lens.height);
+        self.typical = sum * 4.0 / f64::from(M * M) / pixels;
     }
 
     /// Leaves a piece out: what it can carry, from the samples that exist, becomes an error of the pixels around it.
@@ -210,7 +251,13 @@ impl Cutter<'_> {
         }
     }
 
-    fn push(&mut self, range: [[f64; 2]; 2], total: f64, error: f64, cell: Option<Cell>) {
+    pub(super) fn push(
+        &mut self,
+        range: [[f64; 2]; 2],
+        total: f64,
+        error: f64,
+        cell: Option<Cell>,
+    ) {
         // To the pixel, with what lies between the samples; never more than the frame.
         let [columns, rows] = [0, 1].map(|k| {
             let [low, high] = range[k];
@@ -233,18 +280,12 @@ impl Cutter<'_> {
         });
     }
 
-    fn halve(&mut self, task: Task, axis: usize) {
+    pub(super) fn halve(&mut self, task: Task, axis: usize) {
         if task.depth >= DEEPEST {
             self.lose(&task.chart);
             return;
         }
-        for chart in task.chart.halves(axis) {
-            self.queue.push_back(Task {
-                chart,
-                settled: task.settled,
-                depth: task.depth + 1,
-            });
-        }
+        self.queue.extend(task.halves(axis));
     }
 
     fn visit(&mut self, mut task: Task) {
@@ -262,23 +303,21 @@ impl Cutter<'_> {
             (finite(&xs) && finite(&ys)).then(|| (Chebyshev::new(&xs), Chebyshev::new(&ys)));
 
         // Conditions: violated everywhere, satisfied everywhere, or neither.
-        let mut mixed = None;
+        // One that is not a number somewhere may be so because another is violated there, which then comes first.
+        let (mut mixed, mut unknown, mut dark) = (None, None, false);
         for m in 0..CONDITIONS {
             if task.settled & (1 << m) != 0 {
                 continue;
             }
             let g = grid(&|s| s.conditions[m]);
-            let believed = task.depth >= DARK;
-            if believed && g.iter().flatten().all(|v| !(*v >= 0.0)) {
-                return;
-            }
             let c = finite(&g).then(|| Chebyshev::new(&g));
             let Some(c) = c else {
-                mixed = mixed.or(Some((m, g, None)));
+                dark |= task.depth >= DARK && g.iter().flatten().all(|v| !(*v >= 0.0));
+                unknown = unknown.or(Some((m, g, None)));
                 continue;
             };
             let [p, q] = c.tails();
-            let spread = c.spread() + 3.0 * (p + q);
+            let spread = c.spread() + REMAINDER * (p + q);
             if c.c[0][0] < -spread {
                 return;
             }
@@ -288,14 +327,13 @@ impl Cutter<'_> {
                 mixed = mixed.or(Some((m, g, Some(c))));
             }
         }
-        if let Some((x, y)) = &on_floor {
-            for line in self.lens.frame() {
-                let c = x.combined(line.a, y, line.b, line.c);
-                let [p, q] = c.tails();
-                if c.c[0][0] < -(c.spread() + 3.0 * (p + q)) {
-                    return;
-                }
-            }
+        if dark && mixed.is_none() {
+            return;
+        }
+        if let Some((x, y)) = &on_floor
+            && self.out_of_frame(x, y)
+        {
+            return;
         }
         // What cannot matter any more.
         let finite_flux = |s: &&Sample| Self::exists(s);
@@ -305,11 +343,11 @@ impl Cutter<'_> {
             .filter(finite_flux)
             .map(|s| s.flux.abs())
             .fold(0.0, f64::max);
-        if task.depth >= 2 * DARK && 4.0 * most < self.negligible {
+        if task.depth >= 2 * DARK && 4.0 * most < NEGLIGIBLE * self.typical {
             self.lose(&task.chart);
             return;
         }
-        if let Some((m, g, c)) = mixed {
+        if let Some((m, g, c)) = mixed.or(unknown) {
             self.cut_border(task, m, &g, c.as_ref());
             return;
         }
@@ -319,163 +357,32 @@ impl Cutter<'_> {
             self.halve(task, axis);
             return;
         };
-        self.finish(task, x, y, Chebyshev::new(&flux));
+        self.keep(task, [x, y, Chebyshev::new(&flux)], 0.0);
     }
 
     fn cut_border(&mut self, task: Task, m: usize, g: &Grid, c: Option<&Chebyshev>) {
+        if task.depth >= DEEPEST {
+            self.lose(&task.chart);
+            return;
+        }
         let value = |chart: &Chart, p: [f64; 2]| self.sample(chart, p).conditions[m];
-        match border::find(&task.chart, g, c, task.depth, &value) {
+        match border::find(&task.chart, g, c, task.depth, self.scales[m], &value) {
             Border::Halve(axis) => self.halve(task, axis),
             Border::Parts(parts) => {
-                for (chart, done) in parts {
+                for (chart, part) in parts {
+                    let edge = match part {
+                        Part::Cut(edge) => Some((edge, 0)),
+                        _ => task.edge,
+                    };
+                    let done = part != Part::Unknown;
                     self.queue.push_back(Task {
                         chart,
                         settled: task.settled | if done { 1 << m } else { 0 },
                         depth: task.depth + 1,
+                        edge,
                     });
                 }
             }
         }
     }
-
-    /// All conditions hold: keep the cell if it is smooth and small enough.
-    fn finish(&mut self, task: Task, x: Chebyshev, y: Chebyshev, flux: Chebyshev) {
-        let (px, py) = (x.polynomial(), y.polynomial());
-        let Some((range, size)) = self.film_range(&px, &py) else {
-            let wider = |c: &Chebyshev| [c.c[0][1].abs(), c.c[1][0].abs()];
-            let [a, b] = [0, 1].map(|k| wider(&x)[k] + wider(&y)[k]);
-            self.halve(task, usize::from(b > a));
-            return;
-        };
-        // Errors of the interpolants: of the place relative to the cell or to a thousandth of a pixel, of the flux
-        // relative to itself.
-        let scale = self.lens.density(px.c[0][0], py.c[0][0]);
-        let pixel = 1.0 / scale.abs().sqrt();
-        let place = (x.spread() + y.spread()).max(1e-3 * pixel);
-        let rounding = 1e-15 * (x.c[0][0].abs() + y.c[0][0].abs() + x.spread() + y.spread());
-        let amount = flux.c[0][0].abs() + flux.spread();
-        let mut miss = [0.0; 2];
-        for k in 0..2 {
-            let in_place = (x.tails()[k] + y.tails()[k] - 30.0 * rounding).max(0.0) / place;
-            let in_flux = (flux.tails()[k] - 3e-14 * amount).max(0.0) / amount.max(1e-300);
-            miss[k] = in_place.max(in_flux);
-        }
-        let worst = miss[0].max(miss[1]);
-        let total = integral(&flux);
-        if worst > SMOOTH {
-            if 4.0 * amount < self.negligible {
-                self.push(range, 0.0, 4.0 * amount, None);
-            } else {
-                self.halve(task, usize::from(miss[1] > miss[0]));
-            }
-            return;
-        }
-        let error = (worst + 1e-15) * 4.0 * amount;
-        let single = (0..2).all(|k| range[k][0].floor() == range[k][1].floor());
-        let shape = if regular(&x, &y) {
-            Shape::Regular
-        } else {
-            Shape::Folded
-        };
-        let allowed = SPAN[usize::from(shape == Shape::Folded)];
-        let span = (range[0][1] - range[0][0]).max(range[1][1] - range[1][0]);
-        if span > allowed && !single && task.depth < DEEPEST {
-            self.halve(task, usize::from(size[1] > size[0]));
-            return;
-        }
-        // Slices go along a: the direction in which more happens.
-        let exchange = shape == Shape::Folded && size[1] > size[0];
-        let order = |c: Chebyshev| {
-            if exchange {
-                c.exchanged().polynomial()
-            } else {
-                c.polynomial()
-            }
-        };
-        let mut primitive = order(flux);
-        for row in &mut primitive.c {
-            for (k, c) in row.iter_mut().enumerate() {
-                *c /= (k + 1) as f64;
-            }
-        }
-        let cell = Cell {
-            x: order(x),
-            y: order(y),
-            flux: primitive,
-            shape,
-        };
-        self.push(range, total, error, Some(cell));
-    }
-
-    /// Range of the film coordinates, and the largest extent on the film along either axis; `None` if not all of the cell
-    /// is in front of the camera.
-    fn film_range(&self, x: &Polynomial, y: &Polynomial) -> Option<([[f64; 2]; 2], [f64; 2])> {
-        const AT: [f64; 5] = [-1.0, -0.6, 0.0, 0.6, 1.0];
-        let mut film = [[[0.0; 2]; 5]; 5];
-        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for (l, b) in AT.into_iter().enumerate() {
-            let (cx, cy) = (x.along_a(b), y.along_a(b));
-            for (k, a) in AT.into_iter().enumerate() {
-                let p = [&cx, &cy].map(|c| crate::flux::poly::value(c, a));
-                if !(self.lens.depth(p[0], p[1]) > 0.0) {
-                    return None;
-                }
-                film[l][k] = self.lens.film(p[0], p[1]);
-                for (range, f) in range.iter_mut().zip(film[l][k]) {
-                    *range = [range[0].min(f), range[1].max(f)];
-                }
-            }
-        }
-        let mut size = [0.0_f64; 2];
-        for k in 0..5 {
-            for (axis, size) in size.iter_mut().enumerate() {
-                let line = |n: usize| if axis == 0 { film[k][n] } else { film[n][k] };
-                let mut length = 0.0;
-                for n in 1..5 {
-                    let (p, q) = (line(n - 1), line(n));
-                    length += (p[0] - q[0]).abs().max((p[1] - q[1]).abs());
-                }
-                *size = size.max(length);
-            }
-        }
-        Some((range, size))
-    }
-}
-
-/// The integral over [-1, 1]²: ∫ T_k = 2/(1 - k²) for even k, 0 for odd.
-fn integral(c: &Chebyshev) -> f64 {
-    let weight = |k: usize| {
-        if k % 2 == 0 {
-            2.0 / (1.0 - (k * k) as f64)
-        } else {
-            0.0
-        }
-    };
-    let mut sum = 0.0;
-    for (l, row) in c.c.iter().enumerate() {
-        let inner: f64 = row.iter().enumerate().map(|(k, c)| weight(k) * c).sum();
-        sum += weight(l) * inner;
-    }
-    sum
-}
-
-/// Whether the map is the identity plus a contraction, after its linear part is inverted: then it is one-to-one, and
-/// Newton's method converges on it.
-fn regular(x: &Chebyshev, y: &Chebyshev) -> bool {
-    let [xa, xb] = [x.c[0][1], x.c[1][0]];
-    let [ya, yb] = [y.c[0][1], y.c[1][0]];
-    let det = xa * yb - xb * ya;
-    if !(det.abs() > 1e-12 * (xa.abs() + ya.abs()) * (xb.abs() + yb.abs())) {
-        return false;
-    }
-    let first = x.combined(yb / det, y, -xb / det, 0.0);
-    let second = x.combined(-ya / det, y, xa / det, 0.0);
-    let weight = |k: usize, l: usize| {
-        if k + l > 1 {
-            (k * k + l * l) as f64
-        } else {
-            0.0
-        }
-    };
-    first.sum(weight) < 0.5 && second.sum(weight) < 0.5
 }

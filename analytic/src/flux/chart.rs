@@ -7,12 +7,19 @@ use crate::flux::poly::{N, value};
 enum Step {
     /// The box with this centre and these half widths.
     Box { center: [f64; 2], half: [f64; 2] },
-    /// Along `axis` only what is on one side of a curve over the other axis: above it, or below.
-    Cut {
-        axis: usize,
-        above: bool,
-        curve: [f64; N],
-    },
+    /// Along an axis only what is on one side of a curve over the other axis.
+    Cut { edge: Edge, curve: [f64; N] },
+    /// The distance from an end is squared.
+    Square { edge: Edge },
+}
+
+/// The end of a piece that lies on a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// Coordinate.
+    pub axis: usize,
+    /// The piece is above the curve, which so is at -1; or below it.
+    pub above: bool,
 }
 
 /// A piece of the parameters.
@@ -41,10 +48,19 @@ impl Chart {
         Chart { steps }
     }
 
-    /// The part above or below a curve along an axis.
-    pub fn cut(&self, axis: usize, above: bool, curve: [f64; N]) -> Self {
+    /// The part on one side of a curve.
+    pub fn cut(&self, edge: Edge, curve: [f64; N]) -> Self {
+        self.then(Step::Cut { edge, curve })
+    }
+
+    /// The same piece in coordinates in which a square root of the distance from an end is smooth.
+    pub fn squared(&self, edge: Edge) -> Self {
+        self.then(Step::Square { edge })
+    }
+
+    fn then(&self, step: Step) -> Self {
         let mut steps = self.steps.clone();
-        steps.push(Step::Cut { axis, above, curve });
+        steps.push(step);
         Chart { steps }
     }
 
@@ -67,12 +83,18 @@ impl Chart {
                     p = [center[0] + half[0] * p[0], center[1] + half[1] * p[1]];
                     area *= half[0] * half[1];
                 }
-                Step::Cut { axis, above, curve } => {
-                    let edge = value(curve, p[1 - axis]);
-                    let (low, high) = if *above { (edge, 1.0) } else { (-1.0, edge) };
+                Step::Cut { edge, curve } => {
+                    let at = value(curve, p[1 - edge.axis]);
+                    let (low, high) = if edge.above { (at, 1.0) } else { (-1.0, at) };
                     let half = 0.5 * (high - low);
-                    p[*axis] = low + half * (1.0 + p[*axis]);
+                    p[edge.axis] = low + half * (1.0 + p[edge.axis]);
                     area *= half;
+                }
+                Step::Square { edge } => {
+                    let sign = if edge.above { 1.0 } else { -1.0 };
+                    let distance = 1.0 + sign * p[edge.axis];
+                    p[edge.axis] = sign * (0.5 * distance * distance - 1.0);
+                    area *= distance;
                 }
             }
         }

@@ -6,8 +6,10 @@
 //! leaves through a side (zeros of polynomials), where two lines cross in the slice and where the slice touches a line
 //! (bisected between slices on which the order of the lines differs).
 
+use core::cell::Cell;
+
 use crate::camera::Bounded;
-use crate::flux::cells::Cell;
+use crate::flux::cells::Cell as Piece;
 use crate::flux::lens::{Lens, Linear};
 use crate::flux::poly::{N, value, zeros};
 use crate::pixel::rule::Rule;
@@ -34,6 +36,8 @@ const CROSSINGS: usize = 48;
 const SAMPLES: u32 = 8;
 /// Halvings of a panel, at most.
 const DEEPEST: u32 = 24;
+/// Slices of a cell and a row, about: enough for any geometry that rounding does not blur.
+const MOST: u32 = 40_000;
 
 /// What a slice gives to each column, and the order of the lines on it.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +58,7 @@ struct Event {
 }
 
 struct Task<'a> {
-    cell: &'a Cell,
+    cell: &'a Piece,
     lens: &'a Lens,
     rules: &'a [Rule],
     lines: Vec<Linear>,
@@ -64,11 +68,13 @@ struct Task<'a> {
     tolerance: f64,
     /// How far a break point may be off.
     slack: f64,
+    /// Slices so far.
+    count: Cell<u32>,
 }
 
 /// Adds row `j` of a cell to `out`, the pixels from `columns[0]` on (at most [`WINDOW`]).
 pub fn row(
-    cell: &Cell,
+    cell: &Piece,
     lens: &Lens,
     slices: &Slices,
     j: i64,
@@ -87,6 +93,7 @@ pub fn row(
         first: columns[0],
         tolerance: 0.5 * absolute,
         slack: 1e-3 * libm::cbrt(tolerance * tolerance),
+        count: Cell::new(0),
     };
     let mut sums = [Bounded::default(); WINDOW];
     let events = task.events();
@@ -117,6 +124,7 @@ impl Task<'_> {
     }
 
     fn slice(&self, b: f64) -> Slice {
+        self.count.set(self.count.get() + 1);
         let (x, y) = (self.cell.x.along_a(b), self.cell.y.along_a(b));
         let mut cuts = [(1.0, 0_u64); CROSSINGS];
         let mut count = 0;
@@ -219,6 +227,7 @@ impl Task<'_> {
         if !(length > 0.0) {
             return;
         }
+        let depth = if self.count.get() > MOST { 0 } else { depth };
         let mut before = [f64::INFINITY; WINDOW];
         let mut worst = f64::INFINITY;
         let mut missed = None;

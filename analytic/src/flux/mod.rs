@@ -10,11 +10,12 @@ mod cells;
 mod chart;
 pub mod direct;
 mod folded;
+mod keep;
 mod lens;
 mod poly;
 mod regular;
 
-use core::fmt::Debug;
+use core::fmt::{self, Debug, Formatter};
 use std::sync::Arc;
 
 use crate::camera::Bounded;
@@ -36,7 +37,7 @@ pub struct Ray {
     /// shadow which is subtracted), specular weights included; smooth.
     pub flux: f64,
     /// The ray exists where every margin is ≥ 0; each is a smooth function of the parameters that changes sign where its
-    /// condition does. Unused ones are 1.
+    /// condition does. Unused ones are 1. Where one is negative the others may be anything or NaN as well.
     pub margins: [f64; MARGINS],
 }
 
@@ -59,7 +60,6 @@ pub struct FluxImage {
 }
 
 /// One path class.
-#[derive(Debug)]
 struct Layer {
     pieces: Vec<Piece>,
     /// Pieces that each row touches.
@@ -125,12 +125,13 @@ impl FluxImage {
                     &self.edges,
                     j,
                     window,
-                    tolerance,
+                    (tolerance, typical),
                     &mut sums,
                 )
                 .is_some();
             if !done {
-                let tolerance = (tolerance, 0.1 * tolerance * typical);
+                // A pixel can have many folded cells.
+                let tolerance = (tolerance, 0.02 * tolerance * typical);
                 folded::row(
                     cell,
                     &self.lens,
@@ -149,6 +150,15 @@ impl FluxImage {
             }
             first += step;
         }
+    }
+}
+
+impl Debug for Layer {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Layer")
+            .field("pieces", &self.pieces.len())
+            .field("typical", &self.typical)
+            .finish_non_exhaustive()
     }
 }
 

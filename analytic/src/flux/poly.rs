@@ -6,7 +6,7 @@
 use core::f64::consts::PI;
 use std::sync::OnceLock;
 
-use libm::cos;
+use libm::{acos, cos};
 
 /// Nodes, and coefficients, per variable.
 pub const N: usize = 9;
@@ -18,6 +18,8 @@ struct Tables {
     nodes: [f64; N],
     /// Values at the nodes to Chebyshev coefficients.
     transform: [[f64; N]; N],
+    /// Chebyshev coefficients to those of the lower and of the upper half.
+    halves: [[[f64; N]; N]; 2],
     /// T_k in powers.
     powers: [[f64; N]; N],
 }
@@ -26,11 +28,11 @@ fn tables() -> &'static Tables {
     static TABLES: OnceLock<Tables> = OnceLock::new();
     TABLES.get_or_init(|| {
         let angle = |n: usize| (n as f64 + 0.5) * PI / N as f64;
-        let nodes = core::array::from_fn(|n| -cos(angle(n)));
-        let transform = core::array::from_fn(|k| {
+        let nodes: [f64; N] = core::array::from_fn(|n| -cos(angle(n)));
+        let transform: [[f64; N]; N] = core::array::from_fn(|k| {
             let scale = if k == 0 { 1.0 } else { 2.0 } / N as f64;
             // Nodes ascend: T_k(-x) = (-1)^k T_k(x).
-            let sign = if k % 2 == 0 { scale } else { -scale };
+            let sign = if k.is_multiple_of(2) { scale } else { -scale };
             core::array::from_fn(|n| sign * cos(k as f64 * angle(n)))
         });
         let mut powers = [[0.0; N]; N];
@@ -42,9 +44,22 @@ fn tables() -> &'static Tables {
                 powers[k][p] = 2.0 * shifted - powers[k - 2][p];
             }
         }
+        // T_k at the nodes of a half, interpolated.
+        let halves = [-0.5, 0.5].map(|center| {
+            let mut matrix = [[0.0; N]; N];
+            for k in 0..N {
+                let values = nodes.map(|x: f64| cos(k as f64 * acos(center + 0.5 * x)));
+                for (row, t) in matrix.iter_mut().zip(&transform) {
+                    let t: &[f64; N] = t;
+                    row[k] = t.iter().zip(&values).map(|(t, v)| t * v).sum();
+                }
+            }
+            matrix
+        });
         Tables {
             nodes,
             transform,
+            halves,
             powers,
         }
     })
@@ -67,7 +82,8 @@ pub fn powers(coefficients: &[f64; N]) -> [f64; N] {
     core::array::from_fn(|p| (0..N).map(|k| coefficients[k] * t[k][p]).sum())
 }
 
-fn transposed(g: &Grid) -> Grid {
+/// The grid with the variables exchanged.
+pub fn transposed(g: &Grid) -> Grid {
     core::array::from_fn(|l| core::array::from_fn(|k| g[k][l]))
 }
 
@@ -117,6 +133,20 @@ impl Chebyshev {
             core::array::from_fn(|k| p * self.c[l][k] + q * other.c[l][k])
         });
         c[0][0] += r;
+        Chebyshev { c }
+    }
+
+    /// The same function on the lower or upper half along an axis.
+    pub fn half(&self, axis: usize, upper: bool) -> Self {
+        let matrix = &tables().halves[usize::from(upper)];
+        let apply = |row: &[f64; N]| -> [f64; N] {
+            core::array::from_fn(|k| (0..N).map(|n| matrix[k][n] * row[n]).sum())
+        };
+        let c = if axis == 0 {
+            self.c.map(|row| apply(&row))
+        } else {
+            transposed(&transposed(&self.c).map(|row| apply(&row)))
+        };
         Chebyshev { c }
     }
 

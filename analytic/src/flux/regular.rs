@@ -67,7 +67,7 @@ pub fn row(
     edges: &Edges,
     j: i64,
     columns: [i64; 2],
-    tolerance: f64,
+    (tolerance, typical): (f64, f64),
     out: &mut [Bounded],
 ) -> Option<()> {
     let sides = [(0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)].map(|(axis, end)| {
@@ -94,8 +94,9 @@ pub fn row(
         cell,
         lens,
         rules: &edges.rules,
-        step: (0.01 * tolerance).max(1e-14),
-        tolerance: 0.05 * tolerance * radiance,
+        step: (0.01 * tolerance).clamp(1e-14, 1e-8),
+        // Near a fold a cell is much brighter than the pixel of which it is a small part.
+        tolerance: 0.05 * tolerance * radiance.min(typical),
     };
     let count = (columns[1] - columns[0] + 1) as usize;
     let mut sums = [Bounded::default(); MOST];
@@ -302,7 +303,8 @@ impl Task<'_> {
                 size += y.abs();
             }
             let value = sum * (high - low);
-            let rounding = 4.0 * f64::EPSILON * size * (high - low);
+            // The Jacobian is that of the last point but one.
+            let rounding = (4.0 * f64::EPSILON + self.step) * size * (high - low);
             let difference = (value - before).abs();
             result = Bounded {
                 value,

@@ -7,6 +7,7 @@ mod cup;
 mod events;
 mod fan;
 mod floor_polygon;
+mod furnace;
 mod line;
 pub mod planar;
 mod planar_image;
@@ -22,6 +23,7 @@ use crate::flux::FluxImage;
 use crate::scene::{Entry, InvalidParameter};
 
 use cup::CupImage;
+use furnace::FurnaceImage;
 use planar_image::PlanarImage;
 use pool::PoolImage;
 
@@ -39,6 +41,7 @@ enum Image {
     Cup(CupImage),
     Pool(PoolImage),
     Flux(FluxImage),
+    Furnace(FurnaceImage),
 }
 
 /// The image of a floor that is seen directly, by conservation of flux.
@@ -58,6 +61,7 @@ impl PixelTruth {
             .map(Image::Planar)
             .or_else(|| CupImage::new(entry).map(Image::Cup))
             .or_else(|| PoolImage::new(entry).map(Image::Pool))
+            .or_else(|| FurnaceImage::new(entry).map(Image::Furnace))
             .or_else(|| flux_image(entry).map(Image::Flux));
         let Some(image) = image else {
             return Err(InvalidParameter {
@@ -87,6 +91,7 @@ impl PixelTruth {
             Image::Planar(image) => image.row(j, tolerance, &mut row),
             Image::Cup(image) => image.row(j, tolerance, &mut row),
             Image::Pool(image) => image.row(j, tolerance, &mut row),
+            Image::Furnace(image) => image.row(j, tolerance, &mut row),
             Image::Flux(image) => image.row(j, tolerance, &mut row),
         }
         row

@@ -6,6 +6,7 @@
 //!
 //! Each kind has a file in [`families`]: its data, its path classes, its closure and its ranges.
 
+mod beside;
 mod camera;
 pub mod families;
 mod frame;
@@ -76,6 +77,18 @@ pub enum Kind {
     GlassPillar(GlassPillarScene),
     /// Floor and point light in a wedge of two vertical mirrors.
     PlanarChains(PlanarChainsScene),
+    /// A concave spherical cap above the floor, under a point light.
+    ConcaveSphere(ConcaveSphereScene),
+    /// A mirror ball above the floor, under a point light.
+    ConvexSphere(ConvexSphereScene),
+    /// A paraboloid above the floor, light at the focus.
+    Paraboloid(ParaboloidScene),
+    /// An ellipsoid or hyperboloid above the floor, light at a focus.
+    ConicMirrors(ConicMirrorsScene),
+    /// A closed diffuse sphere with a point light inside.
+    Furnace(FurnaceScene),
+    /// A flat water surface over the floor, light above it and camera below it.
+    Underwater(UnderwaterScene),
 }
 
 impl Kind {
@@ -91,6 +104,12 @@ impl Kind {
             Kind::ConicWall(s) => s,
             Kind::GlassPillar(s) => s,
             Kind::PlanarChains(s) => s,
+            Kind::ConcaveSphere(s) => s,
+            Kind::ConvexSphere(s) => s,
+            Kind::Paraboloid(s) => s,
+            Kind::ConicMirrors(s) => s,
+            Kind::Furnace(s) => s,
+            Kind::Underwater(s) => s,
         }
     }
 

@@ -230,6 +230,13 @@ impl<S: Scalar> CylinderCup<S> {
                 sum.error += root.irradiance;
             }
         });
+        if let Light::Point(lamp) = &self.light
+            && lamp.is_on(&self.wall)
+            && lamp.x.hypot(lamp.y) != self.wall.radius
+        {
+            // A light next to the wall, and not on it, sends as much light again by way of the wall behind it.
+            sum.error += beam::power(self.reflectance, bounces) * self.direct(x, y).value;
+        }
         // At the foot of the wall rounding decides whether the point is in front of it.
         let a = self.wall.radius;
         let r = x.hypot(y);

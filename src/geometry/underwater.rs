@@ -1,0 +1,61 @@
+//! A flat, unbounded water surface with the floor and the camera below it: one refraction on the light's side, none on
+//! the eye's.
+
+use glam::DVec3;
+use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::{Family, UnderwaterScene};
+
+use super::chains::{Chains, Leg};
+use super::specular::Specular;
+use super::water::Water;
+
+/// The surface, ready for rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Underwater {
+    surface: Water,
+    surface_z: f64,
+    classes: &'static [PathClass],
+}
+
+impl Underwater {
+    /// Prepares a validated scene's surface.
+    pub fn new(scene: &UnderwaterScene) -> Self {
+        Underwater {
+            surface: Water::new(&scene.water),
+            surface_z: scene.water.surface_z,
+            classes: scene.classes(),
+        }
+    }
+}
+
+impl Chains for Underwater {
+    fn classes(&self) -> &'static [PathClass] {
+        self.classes
+    }
+
+    fn follow(&self, _: usize, origin: DVec3, direction: DVec3) -> Leg {
+        let meeting = self.surface.meet(origin, direction);
+        if !(direction.z < 0.0 && meeting.weight > 0.0) {
+            return Leg::DARK;
+        }
+        Leg {
+            origin: meeting.point,
+            direction: meeting.direction,
+            weight: meeting.weight,
+        }
+    }
+
+    fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
+        let t = (self.surface_z - origin.z) / direction.z;
+        (t > 0.0) & (t < t_end)
+    }
+
+    /// In the air a ray is flatter than the straight line to where it lands, and steeper than the line to the point of the
+    /// surface above that.
+    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+        let raised = floor
+            .iter()
+            .map(|&corner| DVec3::new(corner.x, corner.y, self.surface_z));
+        floor.iter().copied().chain(raised).collect()
+    }
+}

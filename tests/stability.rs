@@ -1,0 +1,101 @@
+//! The stability study: no formula loses more than its conditioning explains, every bound holds, and the study can tell.
+
+use std::process::Command;
+
+use nephroid::stability::{ALLOWED_EXCESS, Outcome, Precision, Step, study};
+
+#[test]
+fn no_formula_loses_more_than_four_digits_beyond_its_conditioning() {
+    let rows = study(None);
+    let mut kinds: Vec<_> = rows.iter().map(|r| r.kind).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    assert_eq!(kinds.len(), 13, "{kinds:?}");
+    for row in &rows {
+        let name = format!("{} {} {}", row.kind, row.danger, row.precision.name());
+        // In single precision few points of a grazing ray can be told from the wall.
+        assert!(row.compared() >= 1, "{name}");
+        assert!(
+            row.worst_excess() <= ALLOWED_EXCESS,
+            "{name}: {}",
+            row.worst_excess()
+        );
+        assert_eq!(row.unbounded(), 0, "{name}: {:?}", row.steps);
+        if row.precision == Precision::Double {
+            // Less than this would mean that the sweep never gets near its danger with numbers that can be compared.
+            assert!(
+                2 * row.compared() >= row.steps.len(),
+                "{name}: {}",
+                row.compared()
+            );
+        }
+    }
+    // Towards a fold the conditioning grows like the inverse distance: the sweeps do get there.
+    let folds = rows
+        .iter()
+        .filter(|r| r.danger == "fold" && r.precision == Precision::Double);
+    assert!(folds.into_iter().all(|r| r.worst_conditioning() >= 1e8));
+}
+
+#[test]
+fn a_formula_that_cancels_is_told() {
+    // 1 - cos t for (t/2)², t = 1e-3: seven digits are lost, the conditioning explains none.
+    let t = 1e-3_f32;
+    let naive = f64::from(1.0 - libm::cosf(t));
+    let exact = 2.0 * libm::sin(0.5 * f64::from(t)).powi(2);
+    let step = Step {
+        t: 1e-3,
+        outcome: Outcome::Compared {
+            error: ((naive - exact) / exact).abs(),
+            conditioning: 2.0,
+            bounded: true,
+        },
+    };
+    let excess = step.outcome.excess(Precision::Single).unwrap();
+    assert!(excess > ALLOWED_EXCESS, "{excess}");
+}
+
+#[test]
+fn the_command_prints_a_table_and_draws_a_plot() {
+    let plot = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("stability.svg");
+    let output = Command::new(env!("CARGO_BIN_EXE_nephroid"))
+        .args(["stability", "mirror-wall", "--plot"])
+        .arg(&plot)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        table.contains("grazing incidence") && table.contains("f32"),
+        "{table}"
+    );
+    assert!(
+        table
+            .lines()
+            .skip(1)
+            .all(|l| l.starts_with("planar-mirror")),
+        "{table}"
+    );
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert!(
+        svg.starts_with("<svg") && svg.contains("planar-mirror: scale") && !svg.contains("NaN")
+    );
+    let json = Command::new(env!("CARGO_BIN_EXE_nephroid"))
+        .args(["stability", "mirror-wall", "--json"])
+        .output()
+        .unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(json["schema"], "nephroid-stability/1");
+    assert!(
+        json["rows"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|r| r["stable"] == true)
+    );
+    let unknown = Command::new(env!("CARGO_BIN_EXE_nephroid"))
+        .args(["stability", "saucer"])
+        .output()
+        .unwrap();
+    assert_eq!(unknown.status.code(), Some(2));
+}
