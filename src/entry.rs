@@ -21,6 +21,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("pillar", include_str!("../scenes/pillar.toml")),
     ("conic-wall", include_str!("../scenes/conic-wall.toml")),
     ("glass-pillar", include_str!("../scenes/glass-pillar.toml")),
+    ("glass-column", include_str!("../scenes/glass-column.toml")),
     ("corner", include_str!("../scenes/corner.toml")),
     ("dome", include_str!("../scenes/dome.toml")),
     ("ball", include_str!("../scenes/ball.toml")),
