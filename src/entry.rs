@@ -169,7 +169,6 @@ const ALLOWED: &[(&str, &str)] = &[
         "conic",
         "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and center if it is not [0, 0]",
     ),
-    ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
     (
         "focal_length",
@@ -184,10 +183,6 @@ const ALLOWED: &[(&str, &str)] = &[
         "a finite number greater than inner_radius (metres)",
     ),
     ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
-    (
-        "eccentricity",
-        "a number from 0 to 10 (wall), from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
-    ),
     ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
     ("rim_z", "a finite number greater than 0 (metres)"),
     (
@@ -221,7 +216,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
         "center",
-        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor or a pillar",
+        "finite numbers from -1e9 to 1e9 (metres): two for a floor, a pillar, or the axis of a dish or conic, three otherwise",
     ),
     ("normal", "three finite numbers: a direction of any length"),
     (
@@ -249,6 +244,10 @@ const ALLOWED: &[(&str, &str)] = &[
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("direction", "two finite numbers: a direction of any length"),
     ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "eccentricity",
+        "a finite number from 0 to 10 (conic wall), or to 1000 and not within 0.001 of 1 (conic of revolution)",
+    ),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),
