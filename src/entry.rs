@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
-    Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap, SphereWall, Water,
+    self, ArcWall, Ball, Camera, CircleLight, Conic, ConicArc, DirectionalLight, Dish, Entry,
+    Floor, FocalLight, Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap,
+    SphereWall, Water,
 };
 use serde::Deserialize;
 
@@ -26,6 +27,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("underwater", include_str!("../scenes/underwater.toml")),
     ("pillar", include_str!("../scenes/pillar.toml")),
     ("conic-wall", include_str!("../scenes/conic-wall.toml")),
+    ("cup-rim", include_str!("../scenes/cup-rim.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -102,6 +104,7 @@ kinds! {
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
+    "cylinder-lamp" => CylinderLamp(CylinderLampScene { light: CircleLight, floor: Floor, wall: ArcWall }),
 }
 
 /// The kinds, as an error message lists them.
@@ -124,7 +127,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "light",
-        "a table: position and intensity (point), or elevation_degrees and irradiance (directional)",
+        "a table: position and intensity (point), elevation_degrees and irradiance (directional), or azimuth_degrees, height, intensity, and inset if it is not 0 (beside a circular wall)",
     ),
     (
         "floor",
@@ -206,7 +209,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("elevation_degrees", "a finite number from 1 to 85"),
     (
         "half_arc_degrees",
-        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
+        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic, or a circle with a lamp)",
+    ),
+    ("azimuth_degrees", "a finite number from -360 to 360"),
+    (
+        "inset",
+        "0 (on the circle), or a finite number from a hundredth of the wall's radius to all of it (metres)",
     ),
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("axis", "two finite numbers: a direction of any length"),

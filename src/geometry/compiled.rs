@@ -3,9 +3,9 @@
 use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
-    CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
-    GlassSlabScene, Kind, ParaboloidScene, PillarScene, PlanarMirrorScene, PointLight,
-    UnderwaterScene,
+    CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry, Family,
+    FlatInterfaceScene, FocalLight, GlassSlabScene, Kind, ParaboloidScene, PillarScene,
+    PlanarMirrorScene, PointLight, UnderwaterScene,
 };
 
 use super::arc::Arc;
@@ -13,6 +13,7 @@ use super::ball::Ball;
 use super::chains::Chains;
 use super::conic::Conic;
 use super::conic_wall::ConicWall;
+use super::cup_wall::CupWall;
 use super::dish::Dish;
 use super::floor::Floor;
 use super::furnace::Furnace;
@@ -98,6 +99,7 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
         Kind::Pillar(s) => visitor.chains(build.pillar(s)),
         Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
+        Kind::CylinderLamp(s) => visitor.chains(build.cylinder_lamp(s)),
     }
 }
 
@@ -212,5 +214,17 @@ impl Build {
     fn conic_wall(&self, s: &ConicWallScene) -> Scene<Point, ConicWall> {
         let wall = ConicWall::new(s, self.reflectance(s.wall.reflectance));
         self.scene(self.point(&s.light), wall, &s.floor)
+    }
+
+    fn cylinder_lamp(&self, s: &CylinderLampScene) -> Scene<Point, CupWall> {
+        let wall = CupWall::new(&s.wall, self.reflectance(s.wall.reflectance), s.classes());
+        let (light, wall_radius) = (&s.light, s.wall.radius);
+        let (sin, cos) = libm::sincos(light.azimuth_degrees.to_radians());
+        let plan = DVec3::new(cos, sin, 0.0) * (wall_radius - light.inset);
+        let light = Point {
+            position: plan.with_z(light.height),
+            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+        };
+        self.scene(light, wall, &s.floor)
     }
 }

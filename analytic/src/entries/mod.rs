@@ -10,6 +10,7 @@ mod conic_mirrors;
 mod conic_wall;
 mod convex_sphere;
 mod cylinder_cup;
+mod cylinder_lamp;
 mod diffuse;
 mod flat_interface;
 mod furnace;
@@ -115,6 +116,7 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::Underwater(s) => Arc::new(underwater::form(s)),
         Kind::Pillar(s) => Arc::new(pillar::form(s)),
         Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
+        Kind::CylinderLamp(s) => Arc::new(cylinder_lamp::form(s)),
     }
 }
 

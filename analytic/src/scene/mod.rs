@@ -84,6 +84,8 @@ pub enum Kind {
     Pillar(PillarScene),
     /// A vertical wall over an arc of a conic, under a point light.
     ConicWall(ConicWallScene),
+    /// A vertical circular wall, under a point light inside its circle or on it.
+    CylinderLamp(CylinderLampScene),
 }
 
 impl Kind {
@@ -103,6 +105,7 @@ impl Kind {
             Kind::Underwater(s) => s,
             Kind::Pillar(s) => s,
             Kind::ConicWall(s) => s,
+            Kind::CylinderLamp(s) => s,
         }
     }
 
