@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
-    GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge, PointLight,
-    RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
+    self, ArcWall, Ball, Camera, CircleLight, Conic, ConicArc, DirectionalLight, Dish, Entry,
+    Floor, FocalLight, GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge,
+    PointLight, RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 
@@ -33,6 +33,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("glass-ball", include_str!("../scenes/glass-ball.toml")),
     ("ripple-pool", include_str!("../scenes/ripple-pool.toml")),
     ("lens", include_str!("../scenes/lens.toml")),
+    ("cup-rim", include_str!("../scenes/cup-rim.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -118,6 +119,7 @@ kinds! {
     "stigmatic-refractors" => StigmaticRefractors(StigmaticRefractorsScene {
         light: VerticalLight, floor: Floor, lens: LensFront,
     }),
+    "cylinder-lamp" => CylinderLamp(CylinderLampScene { light: CircleLight, floor: Floor, wall: ArcWall }),
 }
 
 /// The kinds, as an error message lists them.
@@ -140,7 +142,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "light",
-        "a table: position and intensity (point), or elevation_degrees and irradiance (directional)",
+        "a table: position and intensity (point), elevation_degrees and irradiance (directional), or azimuth_degrees, height, intensity, and inset if it is not 0 (beside a circular wall)",
     ),
     (
         "floor",
@@ -234,7 +236,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("elevation_degrees", "a finite number from 1 to 85"),
     (
         "half_arc_degrees",
-        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
+        "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic, or a circle with a lamp)",
+    ),
+    ("azimuth_degrees", "a finite number from -360 to 360"),
+    (
+        "inset",
+        "0 (on the circle), or a finite number from a hundredth of the wall's radius to all of it (metres)",
     ),
     ("wedge", "a table with divisor and reflectance"),
     (

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
-    CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
-    GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene,
-    PlanarChainsScene, PlanarMirrorScene, PointLight, StigmaticRefractorsScene, UnderwaterScene,
-    VerticalLight, WaterWavesScene,
+    CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry, Family,
+    FlatInterfaceScene, FocalLight, GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind,
+    ParaboloidScene, PillarScene, PlanarChainsScene, PlanarMirrorScene, PointLight,
+    StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
 };
 
 use super::arc::Arc;
@@ -14,6 +14,7 @@ use super::ball::Ball;
 use super::chains::Chains;
 use super::conic::Conic;
 use super::conic_wall::ConicWall;
+use super::cup_wall::CupWall;
 use super::dish::Dish;
 use super::floor::Floor;
 use super::furnace::Furnace;
@@ -109,6 +110,7 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::GlassSphere(s) => visitor.chains(build.glass_sphere(s)),
         Kind::WaterWaves(s) => visitor.chains(build.water_waves(s)),
         Kind::StigmaticRefractors(s) => visitor.chains(build.stigmatic_refractors(s)),
+        Kind::CylinderLamp(s) => visitor.chains(build.cylinder_lamp(s)),
     }
 }
 
@@ -251,5 +253,17 @@ impl Build {
     fn planar_chains(&self, s: &PlanarChainsScene) -> Scene<Point, Wedge> {
         let wedge = Wedge::new(s, self.reflectance(s.wedge.reflectance));
         self.scene(self.point(&s.light), wedge, &s.floor)
+    }
+
+    fn cylinder_lamp(&self, s: &CylinderLampScene) -> Scene<Point, CupWall> {
+        let wall = CupWall::new(&s.wall, self.reflectance(s.wall.reflectance), s.classes());
+        let (light, wall_radius) = (&s.light, s.wall.radius);
+        let (sin, cos) = libm::sincos(light.azimuth_degrees.to_radians());
+        let plan = DVec3::new(cos, sin, 0.0) * (wall_radius - light.inset);
+        let light = Point {
+            position: plan.with_z(light.height),
+            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+        };
+        self.scene(light, wall, &s.floor)
     }
 }

@@ -11,6 +11,7 @@ pub mod chains;
 pub mod compiled;
 pub mod conic;
 pub mod conic_wall;
+pub mod cup_wall;
 pub mod dielectric;
 pub mod dish;
 pub mod emission;

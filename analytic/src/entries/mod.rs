@@ -10,6 +10,7 @@ mod conic_mirrors;
 mod conic_wall;
 mod convex_sphere;
 mod cylinder_cup;
+mod cylinder_lamp;
 mod diffuse;
 mod flat_interface;
 mod furnace;
@@ -125,6 +126,7 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::GlassSphere(s) => Arc::new(glass_sphere::form(s)),
         Kind::WaterWaves(s) => Arc::new(water_waves::form(s)),
         Kind::StigmaticRefractors(s) => Arc::new(stigmatic_refractors::form(s)),
+        Kind::CylinderLamp(s) => Arc::new(cylinder_lamp::form(s)),
     }
 }
 

@@ -95,6 +95,8 @@ pub enum Kind {
     WaterWaves(WaterWavesScene),
     /// A lens with its focus near the floor, glass from the lens to the floor.
     StigmaticRefractors(StigmaticRefractorsScene),
+    /// A vertical circular wall, under a point light inside its circle or on it.
+    CylinderLamp(CylinderLampScene),
 }
 
 impl Kind {
@@ -119,6 +121,7 @@ impl Kind {
             Kind::GlassSphere(s) => s,
             Kind::WaterWaves(s) => s,
             Kind::StigmaticRefractors(s) => s,
+            Kind::CylinderLamp(s) => s,
         }
     }
 

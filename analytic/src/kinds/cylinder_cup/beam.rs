@@ -305,11 +305,12 @@ impl CylinderCup<f64> {
             true,
             &mut |root| found = Some(root),
         );
-        let across = self.wall.radius * ray.sin_i;
+        let (across, m) = (self.wall.radius * ray.sin_i, family.turns);
         found.map(|root| FoldRay {
             root,
             along,
             across,
+            speed: across * (1.0 / m - m),
         })
     }
 }

@@ -6,6 +6,8 @@
 //! or where the lit part ends.
 
 use super::{CylinderCup, Light, Root};
+use crate::kinds::plan_caustic::{self, Touch};
+use crate::kinds::singularity::Singularity;
 use crate::roots::bracketed;
 
 /// Rays per bounce with which the curve is searched.
@@ -18,6 +20,8 @@ struct Fold {
     y: f64,
     cos_theta: f64,
     sin_theta: f64,
+    /// Velocity of the point along the ray, per parameter.
+    speed: f64,
     lit: bool,
 }
 
@@ -39,6 +43,18 @@ impl CylinderCup<f64> {
         (1..=max_bounces)
             .filter_map(|k| self.distance_to_fold_of(x, y, k))
             .min_by(f64::total_cmp)
+    }
+
+    /// The nearest lit point of the caustic of exactly `bounces` reflections, and whether it is a cusp.
+    pub fn singularity(&self, x: f64, y: f64, bounces: u32) -> Option<Singularity<f64>> {
+        plan_caustic::nearest((x, y), self.fold_range(), |u| {
+            self.fold(u, bounces).map(|fold| Touch {
+                point: (fold.x, fold.y),
+                direction: (fold.cos_theta, fold.sin_theta),
+                speed: fold.speed,
+                lit: fold.lit,
+            })
+        })
     }
 
     fn distance_to_fold_of(&self, x: f64, y: f64, bounces: u32) -> Option<f64> {
@@ -121,6 +137,7 @@ impl CylinderCup<f64> {
             y: ray.along * root.sin_theta - ray.across * root.cos_theta,
             cos_theta: root.cos_theta,
             sin_theta: root.sin_theta,
+            speed: ray.speed,
             lit: self.is_lit(&root, bounces),
         })
     }
@@ -133,6 +150,8 @@ pub(super) struct FoldRay {
     pub along: f64,
     /// p × d of the ray.
     pub across: f64,
+    /// (p · d)' + (p × d) θ': the touching point's velocity, which is along the ray; zero at a cusp.
+    pub speed: f64,
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@
 //! the last leg ends where it would meet the arc again, and goes on outside the circle where it would not.
 
 pub mod beam;
+pub mod bundle;
 mod circle;
 pub mod eye;
 pub mod flatland;
@@ -24,7 +25,7 @@ use libm::{cos, sin};
 
 use crate::kinds::{Estimate, rounding_error};
 use crate::scalar::Scalar;
-use crate::scene::{ArcWall, DirectionalLight};
+use crate::scene::{ArcWall, CylinderLampScene, DirectionalLight};
 use crate::vector::{Vec3, vec3};
 
 pub use beam::Beam;
@@ -126,6 +127,29 @@ impl CylinderCup<f64> {
                 irradiance: light.irradiance,
                 sin_elevation: sin(elevation),
                 cos_elevation: cos(elevation),
+            }),
+        }
+    }
+}
+
+impl CylinderCup<f64> {
+    /// The wall of a catalogue entry with a light inside its circle or on it.
+    pub fn with_lamp(scene: &CylinderLampScene) -> Self {
+        let (light, wall) = (&scene.light, &scene.wall);
+        let [x, y, height] = light.position(wall.radius);
+        let half_arc = wall.half_arc_degrees;
+        CylinderCup {
+            wall: Wall {
+                radius: wall.radius,
+                height: Some(wall.height),
+                cos_half_arc: (half_arc < 180.0).then(|| cos(half_arc.to_radians())),
+            },
+            reflectance: wall.reflectance,
+            light: Light::Point(point_light::Lamp {
+                x,
+                y,
+                height,
+                intensity: light.intensity,
             }),
         }
     }
@@ -233,8 +257,11 @@ impl<S: Scalar> CylinderCup<S> {
         if let Light::Point(lamp) = &self.light
             && lamp.is_on(&self.wall)
             && lamp.x.hypot(lamp.y) != self.wall.radius
+            && self.wall.covers(lamp.x / self.wall.radius)
+            && self.wall.reaches(lamp.height)
         {
-            // A light next to the wall, and not on it, sends as much light again by way of the wall behind it.
+            // A light next to the wall, and not on it, sends as much light again by way of the wall behind it, if there is
+            // a wall.
             sum.error += beam::power(self.reflectance, bounces) * self.direct(x, y).value;
         }
         // At the foot of the wall rounding decides whether the point is in front of it.

@@ -19,7 +19,7 @@ use super::beam::power;
 use super::circle::LinearFamily;
 use super::fold::FoldRay;
 use super::{CylinderCup, Root, Wall};
-use crate::kinds::Estimate;
+use crate::kinds::{Estimate, rounding_error};
 use crate::roots::{Isolated, Local, for_each_root};
 use crate::scalar::Scalar;
 
@@ -268,12 +268,21 @@ impl<S: Scalar> CylinderCup<S> {
         let (dx, dy) = (x - lamp.x, y - lamp.y);
         let plan = dx.hypot(dy);
         let distance = plan.hypot(lamp.height);
-        if self.hides_lamp(lamp, x, y) {
-            return sum;
-        }
+        let dark = self.hides_lamp(lamp, x, y);
         let e = lamp.intensity * lamp.height / (distance.squared() * distance);
         let size = x.hypot(y) + lamp.radius();
-        sum.add(e, S::from_f64(4.0) * (S::ONE + size / distance));
+        if !dark {
+            sum.add(e, S::from_f64(4.0) * (S::ONE + size / distance));
+        }
+        // A plan length's error times the slope of the ray is the error of a height, and back.
+        let slant = S::ONE + lamp.height / plan + plan / lamp.height;
+        let margin = rounding_error((size + lamp.height) * slant, S::ZERO);
+        let other = [-margin, margin].into_iter().any(|d| {
+            self.hides_lamp(lamp, x + d, y) != dark || self.hides_lamp(lamp, x, y + d) != dark
+        });
+        if other {
+            sum.error += e;
+        }
         sum
     }
 
@@ -308,7 +317,7 @@ impl CylinderCup<f64> {
         bounces: u32,
     ) -> Option<FoldRay> {
         let k = f64::from(bounces);
-        let (psi, theta, across, first, reach, along) = if lamp.is_on(&self.wall) {
+        let (psi, theta, across, first, reach, along, speed) = if lamp.is_on(&self.wall) {
             let family = lamp.family(&self.wall, k);
             let ray = family.through(0.0, 0.0, parameter);
             let reach = self.wall.radius * ray.cos_i;
@@ -322,11 +331,14 @@ impl CylinderCup<f64> {
                 2.0 * reach,
                 reach,
                 -reach / family.turns,
+                across * (1.0 / family.turns - family.turns),
             )
         } else {
             let ray = lamp.ray(&self.wall, k, 0.0, 0.0, parameter);
             let theta = (ray.cos_theta, ray.sin_theta);
             let along = ray.ahead / ray.turning;
+            let rate = turning_rate(k, ray.across, ray.ahead, ray.reach);
+            let speed = ray.across * ray.turning - (ray.across + along * rate) / ray.turning;
             (
                 parameter,
                 theta,
@@ -334,6 +346,7 @@ impl CylinderCup<f64> {
                 ray.reach - ray.ahead,
                 ray.reach,
                 along,
+                speed,
             )
         };
         let mut found = None;
@@ -345,6 +358,7 @@ impl CylinderCup<f64> {
             root,
             along,
             across,
+            speed,
         })
     }
 }
