@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Ball, Camera, CircleLight, Conic, ConicArc, DirectionalLight, Dish, Entry,
-    Floor, FocalLight, Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap,
+    self, ArcWall, Ball, Camera, CircleLight, ClosedWall, Conic, ConicArc, DirectionalLight, Dish,
+    Entry, Floor, FocalLight, Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap,
     SphereWall, Water,
 };
 use serde::Deserialize;
@@ -28,6 +28,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("pillar", include_str!("../scenes/pillar.toml")),
     ("conic-wall", include_str!("../scenes/conic-wall.toml")),
     ("cup-rim", include_str!("../scenes/cup-rim.toml")),
+    ("deep-cup", include_str!("../scenes/deep-cup.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -104,6 +105,7 @@ kinds! {
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
+    "closed-cup" => ClosedCup(ClosedCupScene { light: DirectionalLight, floor: Floor, wall: ClosedWall }),
     "cylinder-lamp" => CylinderLamp(CylinderLampScene { light: CircleLight, floor: Floor, wall: ArcWall }),
 }
 

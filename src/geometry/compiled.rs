@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
-    CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry, Family,
-    FlatInterfaceScene, FocalLight, GlassSlabScene, Kind, ParaboloidScene, PillarScene,
+    ArcWall, Camera, ClosedCupScene, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene,
+    ConvexSphereScene, CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry,
+    Family, FlatInterfaceScene, FocalLight, GlassSlabScene, Kind, ParaboloidScene, PillarScene,
     PlanarMirrorScene, PointLight, UnderwaterScene,
 };
 
@@ -100,6 +100,7 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::Pillar(s) => visitor.chains(build.pillar(s)),
         Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
         Kind::CylinderLamp(s) => visitor.chains(build.cylinder_lamp(s)),
+        Kind::ClosedCup(s) => visitor.chains(build.closed_cup(s)),
     }
 }
 
@@ -226,5 +227,16 @@ impl Build {
             intensity: self.overrides.light_strength.unwrap_or(light.intensity),
         };
         self.scene(light, wall, &s.floor)
+    }
+
+    fn closed_cup(&self, s: &ClosedCupScene) -> Scene<Directional, CupWall> {
+        let wall = ArcWall {
+            radius: s.wall.radius,
+            height: s.wall.height,
+            half_arc_degrees: 180.0,
+            reflectance: s.wall.reflectance,
+        };
+        let wall = CupWall::new(&wall, self.reflectance(wall.reflectance), s.classes());
+        self.scene(self.directional(&s.light), wall, &s.floor)
     }
 }

@@ -86,6 +86,8 @@ pub enum Kind {
     ConicWall(ConicWallScene),
     /// A vertical circular wall, under a point light inside its circle or on it.
     CylinderLamp(CylinderLampScene),
+    /// A vertical wall all around the floor, under a directional light.
+    ClosedCup(ClosedCupScene),
 }
 
 impl Kind {
@@ -106,6 +108,7 @@ impl Kind {
             Kind::Pillar(s) => s,
             Kind::ConicWall(s) => s,
             Kind::CylinderLamp(s) => s,
+            Kind::ClosedCup(s) => s,
         }
     }
 
