@@ -4,8 +4,8 @@ use std::path::Path;
 
 use nephroid_analytic::scene::{
     self, ArcWall, Ball, Camera, CircleLight, ClosedWall, Conic, ConicArc, DirectionalLight, Dish,
-    Entry, Floor, FocalLight, Kind, MirrorPillar, PointLight, RectangleMirror, Slab, SphereCap,
-    SphereWall, Water,
+    Entry, Floor, FocalLight, GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge,
+    PointLight, RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 
@@ -18,6 +18,11 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
     ("slab", include_str!("../scenes/slab.toml")),
+    ("pillar", include_str!("../scenes/pillar.toml")),
+    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
+    ("glass-pillar", include_str!("../scenes/glass-pillar.toml")),
+    ("glass-column", include_str!("../scenes/glass-column.toml")),
+    ("corner", include_str!("../scenes/corner.toml")),
     ("dome", include_str!("../scenes/dome.toml")),
     ("ball", include_str!("../scenes/ball.toml")),
     ("dish", include_str!("../scenes/dish.toml")),
@@ -25,8 +30,9 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
     ("furnace", include_str!("../scenes/furnace.toml")),
     ("underwater", include_str!("../scenes/underwater.toml")),
-    ("pillar", include_str!("../scenes/pillar.toml")),
-    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
+    ("glass-ball", include_str!("../scenes/glass-ball.toml")),
+    ("ripple-pool", include_str!("../scenes/ripple-pool.toml")),
+    ("lens", include_str!("../scenes/lens.toml")),
     ("cup-rim", include_str!("../scenes/cup-rim.toml")),
     ("deep-cup", include_str!("../scenes/deep-cup.toml")),
 ];
@@ -102,9 +108,18 @@ kinds! {
     "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
     "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "glass-sphere" => GlassSphere(GlassSphereScene { light: VerticalLight, floor: Floor, glass: GlassBall }),
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
+    "glass-pillar" => GlassPillar(GlassPillarScene { light: DirectionalLight, floor: Floor, pillar: GlassCylinder }),
+    "planar-chains" => PlanarChains(PlanarChainsScene { light: PointLight, floor: Floor, wedge: MirrorWedge }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
+    "water-waves" => WaterWaves(WaterWavesScene {
+        light: VerticalLight, floor: Floor, water: Water, waves: Vec<Ripple>,
+    }),
+    "stigmatic-refractors" => StigmaticRefractors(StigmaticRefractorsScene {
+        light: VerticalLight, floor: Floor, lens: LensFront,
+    }),
     "closed-cup" => ClosedCup(ClosedCupScene { light: DirectionalLight, floor: Floor, wall: ClosedWall }),
     "cylinder-lamp" => CylinderLamp(CylinderLampScene { light: CircleLight, floor: Floor, wall: ArcWall }),
 }
@@ -141,20 +156,23 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table: height, half_arc_degrees, reflectance, and radius (circular) or axis, parameter, eccentricity, and focus if it is not [0, 0] (conic); or center, radius and albedo (closed sphere)",
+        "a table: height, half_arc_degrees, reflectance and radius (arc) or direction, parameter, eccentricity and focus (conic), or center, radius and albedo (closed sphere)",
+    ),
+    (
+        "pillar",
+        "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),
     ("ball", "a table with center, radius and reflectance"),
     (
         "dish",
-        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and center if it is not [0, 0]",
     ),
     (
         "conic",
-        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and center if it is not [0, 0]",
     ),
-    ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
     (
         "focal_length",
@@ -169,10 +187,6 @@ const ALLOWED: &[(&str, &str)] = &[
         "a finite number greater than inner_radius (metres)",
     ),
     ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
-    (
-        "eccentricity",
-        "a number from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
-    ),
     ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
     ("rim_z", "a finite number greater than 0 (metres)"),
     (
@@ -187,13 +201,26 @@ const ALLOWED: &[(&str, &str)] = &[
         "pillar",
         "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
     ),
+    (
+        "waves",
+        "a list of tables with amplitude, wave_vector and phase",
+    ),
+    ("amplitude", "a finite number (metres)"),
+    ("wave_vector", "two finite numbers (radians per metre)"),
+    ("phase", "a finite number from -1000 to 1000 (radians)"),
+    (
+        "lens",
+        "a table with defocus, semi_axis, index and half_angle_degrees, and axis if it is not [0, 0]",
+    ),
+    ("defocus", "a finite number from -1e9 to 1e9 (metres)"),
+    ("glass", "a table with center, radius and index"),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
         "center",
-        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor or a pillar",
+        "finite numbers from -1e9 to 1e9 (metres): two for a floor, a pillar, or the axis of a dish or conic, three otherwise",
     ),
     ("normal", "three finite numbers: a direction of any length"),
     (
@@ -218,10 +245,18 @@ const ALLOWED: &[(&str, &str)] = &[
         "inset",
         "0 (on the circle), or a finite number from a hundredth of the wall's radius to all of it (metres)",
     ),
+    ("wedge", "a table with divisor and reflectance"),
+    (
+        "divisor",
+        "a whole number from 1 to 8: the wedge has the angle π/divisor",
+    ),
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
-    ("axis", "two finite numbers: a direction of any length"),
+    ("direction", "two finite numbers: a direction of any length"),
     ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
-    ("eccentricity", "a finite number from 0 to 10"),
+    (
+        "eccentricity",
+        "a finite number from 0 to 10 (conic wall), or to 1000 and not within 0.001 of 1 (conic of revolution)",
+    ),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

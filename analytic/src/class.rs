@@ -81,6 +81,17 @@ impl Chain {
         self.letters.iter().flatten().copied()
     }
 
+    /// The given interactions, of which the first [`MAX_CHAIN`] count.
+    pub const fn of_kinds(kinds: &[Specular]) -> Self {
+        let mut chain = Chain::of(kinds.len());
+        let mut i = 0;
+        while i < chain.len() {
+            chain.letters[i] = Some(kinds[i]);
+            i += 1;
+        }
+        chain
+    }
+
     fn push(&mut self, s: Specular) -> bool {
         if self.len() == MAX_CHAIN {
             return false;
@@ -118,6 +129,15 @@ impl PathClass {
         PathClass {
             eye: Chain::of(eye),
             light: Chain::of(light),
+            diffuse: 1,
+        }
+    }
+
+    /// `L`, the given interactions, `DE`.
+    pub const fn caustic(kinds: &[Specular]) -> Self {
+        PathClass {
+            eye: Chain::EMPTY,
+            light: Chain::of_kinds(kinds),
             diffuse: 1,
         }
     }
@@ -228,6 +248,16 @@ mod tests {
             "LSSSSSSSSSSSSSSSDE",
         ] {
             assert!(text.parse::<PathClass>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn kinds_of_interactions_are_told() {
+        const R: Specular = Specular::Reflection;
+        const T: Specular = Specular::Transmission;
+        for (kinds, text) in [(&[][..], "LDE"), (&[R], "LRDE"), (&[T, R, R, T], "LTRRTDE")] {
+            assert_eq!(PathClass::caustic(kinds).to_string(), text);
+            assert_eq!(text.parse(), Ok(PathClass::caustic(kinds)));
         }
     }
 

@@ -83,7 +83,7 @@ fn image(size: u32) -> FluxImage {
     let entry = cup(size);
     FluxImage::new(
         &entry.camera,
-        entry.kind.floor(),
+        entry.kind.floor().expect("a floor"),
         vec![vec![Arc::new(Caustic)]],
     )
 }

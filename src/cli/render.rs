@@ -53,6 +53,13 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     if let Some((width, height)) = args.size {
         entry.camera.width = width;
         entry.camera.height = height;
+        // Another shape of the frame may show what the scene's own does not.
+        entry.validate().map_err(|e| Error::Parameter {
+            file: format!("{} --size {width}x{height}", args.scene),
+            key: e.key,
+            found: e.found,
+            allowed: e.allowed,
+        })?;
     }
     let png = args.output.with_extension("png");
     if args.png && png == args.output {

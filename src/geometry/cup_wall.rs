@@ -34,6 +34,11 @@ impl CupWall {
         }
     }
 
+    /// The number of reflections of a chain.
+    fn bounces(&self, chain: usize) -> usize {
+        self.classes.get(chain).map_or(0, |c| c.light.len())
+    }
+
     /// Ray parameters at which a line comes into the circle and out of it; NaN where it does not.
     fn crossings(&self, o: DVec3, d: DVec3) -> [f64; 2] {
         let a = d.x * d.x + d.y * d.y;
@@ -59,7 +64,7 @@ impl Chains for CupWall {
     }
 
     fn follow(&self, chain: usize, origin: DVec3, direction: DVec3) -> Leg {
-        let bounces = self.classes.get(chain).map_or(0, |c| c.light.len());
+        let bounces = self.bounces(chain);
         let mut leg = Leg {
             origin,
             direction,
@@ -92,15 +97,18 @@ impl Chains for CupWall {
         self.crossings(origin, direction).into_iter().any(met)
     }
 
-    /// The floor, and the box about the wall.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+    /// The floor, or the box about the wall.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if self.bounces(chain) == 0 {
+            return floor.to_vec();
+        }
         let (s, c) = libm::sincos(self.half_arc.min(core::f64::consts::PI));
         let y_max = if c > 0.0 {
             self.radius * s
         } else {
             self.radius
         };
-        let mut corners = floor.to_vec();
+        let mut corners = Vec::with_capacity(8);
         for x in [self.radius * c, self.radius] {
             for y in [-y_max, y_max] {
                 corners.extend([0.0, self.height].map(|z| DVec3::new(x, y, z)));

@@ -56,7 +56,7 @@ impl Camera {
             return Err(invalid(
                 "camera.position",
                 format!("{:?}", self.position),
-                &format!("a camera lower than the mirror: z less than {ceiling}"),
+                &format!("a camera lower than any optical surface: z less than {ceiling}"),
             ));
         }
         let film = Film::new(self);
@@ -71,7 +71,7 @@ impl Camera {
         Err(invalid(
             "camera.look_at",
             format!("{:?}", self.look_at),
-            "a frame below the horizon, in which there is no mirror",
+            "a frame below the horizon, in which there is no optical surface",
         ))
     }
 }

@@ -1,16 +1,16 @@
 //! A vertical wall all around a floor, in the sun: the deep cup.
 //!
-//! Light comes in over the near rim. With T = tan ε and C = a cos φ, the ray that first meets the wall at the angle φ and
-//! the height z has passed the near rim at z + 2C T ≥ H, and comes down by 2C T along every chord: on the floor it has been
-//! reflected k = ⌈z/(2C T)⌉ times, so that
+//! Light comes in over the near rim. With T = tan ε, the ray that first meets the wall at the angle φ and the height z has
+//! passed the near rim at z + 2a cos φ T ≥ H, and comes down by 2a cos φ T along every chord: on the floor it has been
+//! reflected k times,
 //!
 //! ```text
-//! H/(2aT) - cos φ ≤ cos φ · z/(2C T) ≤ H/(2aT)      and      k < η/cos φ + 1,      η = H/(2aT).
+//! k - 1 < z/(2a cos φ T) ≤ k,     η/cos φ - 1 ≤ z/(2a cos φ T) ≤ η/cos φ,     η = H/(2aT).
 //! ```
 //!
-//! **The classes are all there is.** All chords of the ray pass the axis at a |sin φ|, and none of its floor points is
-//! nearer. A floor that reaches to ρa from the axis is met by rays with cos φ ≥ √(1 - ρ²) only, hence
-//! k ≤ ⌈η/√(1 - ρ²)⌉; and k > η - 1. Light of more reflections exists, and falls beside the floor.
+//! **The classes are all there is.** All chords of the ray pass the axis at a |sin φ|, so that it lands no nearer. A floor
+//! that reaches to ρa from the axis is met by rays with cos φ ≥ √(1 - ρ²) only, hence k ≤ ⌈η/√(1 - ρ²)⌉; and k ≥ ⌊η⌋. Light
+//! of more reflections exists, and falls between the floor and the wall: there is no tail to bound.
 
 use libm::{ceil, floor, sqrt, tan};
 use serde::{Deserialize, Serialize};

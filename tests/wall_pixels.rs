@@ -1,0 +1,89 @@
+//! Pixels of the entries with vertical walls, by conservation of flux along rays, against the mean of the irradiance at
+//! points, which finds the rays by roots: no code in common but the camera.
+
+use nephroid::{entry, truth};
+use nephroid_analytic::camera::Film;
+use nephroid_analytic::entries::{FloorTruth, PointTruth};
+
+/// Nodes and weights of Gauss's rule with 6 points on [0, 1] (Abramowitz & Stegun, table 25.4).
+const RULE: [(f64, f64); 6] = [
+    (0.033_765_242_898_423_98, 0.085_662_246_189_585_18),
+    (0.169_395_306_766_867_75, 0.180_380_786_524_069_3),
+    (0.380_690_406_958_401_56, 0.233_956_967_286_345_53),
+    (0.619_309_593_041_598_4, 0.233_956_967_286_345_53),
+    (0.830_604_693_233_132_3, 0.180_380_786_524_069_3),
+    (0.966_234_757_101_576, 0.085_662_246_189_585_18),
+];
+
+/// The light at the floor point seen at a film point; nothing beside the floor.
+fn seen(film: &Film, truth: &FloorTruth, u: f64, v: f64) -> Option<Vec<PointTruth>> {
+    let d = film.direction(u, v);
+    let t = film.position.z / -d.z;
+    let (x, y) = (film.position.x + d.x * t, film.position.y + d.y * t);
+    truth.is_on_floor(x, y).then(|| truth.at(x, y))
+}
+
+/// Whether a class is smooth over a pixel: as many rays arrive at all points of a fine grid, its border included, and its
+/// caustic is far.
+fn smooth(grid: &[Vec<PointTruth>], class: usize, pixel: f64) -> bool {
+    let roots = grid[0][class].irradiance.roots;
+    grid.iter().all(|p| {
+        let far = p[class]
+            .singularity
+            .is_none_or(|s| s.distance > 5.0 * pixel);
+        p[class].irradiance.roots == roots && far
+    })
+}
+
+/// One pixel in 7 × 6 of each picture. A lost or doubled ray, a wrong area element or a wrong weight would show at 1e-6.
+#[test]
+fn smooth_pixels_are_means_of_point_values() {
+    for name in [
+        "pillar",
+        "conic-wall",
+        "glass-pillar",
+        "glass-column",
+        "corner",
+        "cup-rim",
+        "deep-cup",
+    ] {
+        let mut scene = entry::load(name).unwrap();
+        (scene.camera.width, scene.camera.height) = (70, 70);
+        let image = truth::image(&scene, 1e-9);
+        let (film, floor) = (Film::new(&scene.camera), FloorTruth::new(&scene).unwrap());
+        let pixel = scene.camera.position[2] * film.du.length();
+        let mut lit = vec![0; image.classes.len()];
+        for (i, j) in (0..70)
+            .step_by(7)
+            .flat_map(|j| (0..70).step_by(6).map(move |i| (i, j)))
+        {
+            let at = |s: f64, t: f64| seen(&film, &floor, i as f64 + s, j as f64 + t);
+            let grid: Option<Vec<_>> = (0..49)
+                .map(|k| at(f64::from(k % 7) / 6.0, f64::from(k / 7) / 6.0))
+                .collect();
+            let Some(grid) = grid else { continue };
+            let mut mean = vec![0.0; image.classes.len()];
+            for (s, p) in RULE {
+                for (t, q) in RULE {
+                    for (mean, point) in mean.iter_mut().zip(at(s, t).unwrap()) {
+                        *mean += p * q * point.irradiance.value;
+                    }
+                }
+            }
+            for (c, class) in image.classes.iter().enumerate() {
+                if !smooth(&grid, c, pixel) {
+                    continue;
+                }
+                let expected = mean[c] * floor.albedo() / std::f64::consts::PI;
+                let found = image.layers[c][j * 70 + i];
+                let largest = image.layers[c].iter().fold(0.0_f64, |a, &b| a.max(b));
+                assert!(
+                    (found - expected).abs() <= 1e-6 * expected + 1e-11 * largest,
+                    "{name} {class} ({i}, {j}): {found:e} for {expected:e}"
+                );
+                lit[c] += usize::from(expected > 0.0);
+            }
+        }
+        assert!(lit.iter().all(|&n| n > 0), "{name}: {lit:?}");
+    }
+}
