@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Ball, Camera, CircleLight, Conic, ConicArc, DirectionalLight, Dish, Entry,
-    Floor, FocalLight, GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge,
-    PointLight, RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
+    self, ArcWall, Ball, Camera, CircleLight, ClosedWall, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight, GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge, PointLight, RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 
@@ -34,6 +32,7 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("ripple-pool", include_str!("../scenes/ripple-pool.toml")),
     ("lens", include_str!("../scenes/lens.toml")),
     ("cup-rim", include_str!("../scenes/cup-rim.toml")),
+    ("deep-cup", include_str!("../scenes/deep-cup.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -119,6 +118,7 @@ kinds! {
     "stigmatic-refractors" => StigmaticRefractors(StigmaticRefractorsScene {
         light: VerticalLight, floor: Floor, lens: LensFront,
     }),
+    "closed-cup" => ClosedCup(ClosedCupScene { light: DirectionalLight, floor: Floor, wall: ClosedWall }),
     "cylinder-lamp" => CylinderLamp(CylinderLampScene { light: CircleLight, floor: Floor, wall: ArcWall }),
 }
 

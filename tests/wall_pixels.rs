@@ -44,6 +44,8 @@ fn smooth_pixels_are_means_of_point_values() {
         "glass-pillar",
         "glass-column",
         "corner",
+        "cup-rim",
+        "deep-cup",
     ] {
         let mut scene = entry::load(name).unwrap();
         (scene.camera.width, scene.camera.height) = (70, 70);

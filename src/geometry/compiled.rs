@@ -2,11 +2,7 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
-    CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry, Family,
-    FlatInterfaceScene, FocalLight, GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind,
-    ParaboloidScene, PillarScene, PlanarChainsScene, PlanarMirrorScene, PointLight,
-    StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
+    ArcWall, Camera, ClosedCupScene, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene, CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry, Family, FlatInterfaceScene, FocalLight, GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene, PlanarChainsScene, PlanarMirrorScene, PointLight, StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
 };
 
 use super::arc::Arc;
@@ -111,6 +107,7 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::WaterWaves(s) => visitor.chains(build.water_waves(s)),
         Kind::StigmaticRefractors(s) => visitor.chains(build.stigmatic_refractors(s)),
         Kind::CylinderLamp(s) => visitor.chains(build.cylinder_lamp(s)),
+        Kind::ClosedCup(s) => visitor.chains(build.closed_cup(s)),
     }
 }
 
@@ -265,5 +262,18 @@ impl Build {
             intensity: self.overrides.light_strength.unwrap_or(light.intensity),
         };
         self.scene(light, wall, &s.floor)
+    }
+
+    }
+
+    fn closed_cup(&self, s: &ClosedCupScene) -> Scene<Directional, CupWall> {
+        let wall = ArcWall {
+            radius: s.wall.radius,
+            height: s.wall.height,
+            half_arc_degrees: 180.0,
+            reflectance: s.wall.reflectance,
+        };
+        let wall = CupWall::new(&wall, self.reflectance(wall.reflectance), s.classes());
+        self.scene(self.directional(&s.light), wall, &s.floor)
     }
 }

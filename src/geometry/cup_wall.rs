@@ -34,6 +34,11 @@ impl CupWall {
         }
     }
 
+    /// The number of reflections of a chain.
+    fn bounces(&self, chain: usize) -> usize {
+        self.classes.get(chain).map_or(0, |c| c.light.len())
+    }
+
     /// Ray parameters at which a line comes into the circle and out of it; NaN where it does not.
     fn crossings(&self, o: DVec3, d: DVec3) -> [f64; 2] {
         let a = d.x * d.x + d.y * d.y;
@@ -59,7 +64,7 @@ impl Chains for CupWall {
     }
 
     fn follow(&self, chain: usize, origin: DVec3, direction: DVec3) -> Leg {
-        let bounces = self.classes.get(chain).map_or(0, |c| c.light.len());
+        let bounces = self.bounces(chain);
         let mut leg = Leg {
             origin,
             direction,
@@ -94,7 +99,7 @@ impl Chains for CupWall {
 
     /// The floor, or the box about the wall.
     fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
-        if chain == 0 {
+        if self.bounces(chain) == 0 {
             return floor.to_vec();
         }
         let (s, c) = libm::sincos(self.half_arc.min(core::f64::consts::PI));

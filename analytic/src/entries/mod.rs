@@ -5,6 +5,7 @@
 //! alone.) For images, a form also tells the light of each class as bundles of rays; see [`crate::flux`].
 
 mod axial;
+mod closed_cup;
 mod concave_sphere;
 mod conic_mirrors;
 mod conic_wall;
@@ -127,6 +128,7 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::WaterWaves(s) => Arc::new(water_waves::form(s)),
         Kind::StigmaticRefractors(s) => Arc::new(stigmatic_refractors::form(s)),
         Kind::CylinderLamp(s) => Arc::new(cylinder_lamp::form(s)),
+        Kind::ClosedCup(s) => Arc::new(closed_cup::form(s)),
     }
 }
 

@@ -97,6 +97,8 @@ pub enum Kind {
     StigmaticRefractors(StigmaticRefractorsScene),
     /// A vertical circular wall, under a point light inside its circle or on it.
     CylinderLamp(CylinderLampScene),
+    /// A vertical wall all around the floor, under a directional light.
+    ClosedCup(ClosedCupScene),
 }
 
 impl Kind {
@@ -122,6 +124,7 @@ impl Kind {
             Kind::WaterWaves(s) => s,
             Kind::StigmaticRefractors(s) => s,
             Kind::CylinderLamp(s) => s,
+            Kind::ClosedCup(s) => s,
         }
     }
 

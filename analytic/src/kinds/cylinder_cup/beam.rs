@@ -28,6 +28,7 @@ use super::fold::FoldRay;
 use super::{CylinderCup, Light, Root};
 use crate::roots::{Isolated, bracketed_from, for_each_root};
 use crate::scalar::Scalar;
+use crate::scene::DirectionalLight;
 
 /// Parallel light that travels along +x in plan.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +46,18 @@ impl<S: Scalar> Beam<S> {
     #[inline(always)]
     pub fn slope(&self) -> S {
         self.sin_elevation / self.cos_elevation
+    }
+}
+
+impl Beam<f64> {
+    /// The light of a catalogue entry.
+    pub fn of(light: &DirectionalLight) -> Self {
+        let elevation = light.elevation_degrees.to_radians();
+        Beam {
+            irradiance: light.irradiance,
+            sin_elevation: libm::sin(elevation),
+            cos_elevation: libm::cos(elevation),
+        }
     }
 }
 

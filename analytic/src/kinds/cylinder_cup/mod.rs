@@ -14,6 +14,7 @@
 //! the last leg ends where it would meet the arc again, and goes on outside the circle where it would not.
 
 pub mod beam;
+pub mod beam_bundle;
 pub mod bundle;
 mod circle;
 pub mod eye;
@@ -21,11 +22,11 @@ pub mod flatland;
 pub mod fold;
 pub mod point_light;
 
-use libm::{cos, sin};
+use libm::cos;
 
 use crate::kinds::{Estimate, rounding_error};
 use crate::scalar::Scalar;
-use crate::scene::{ArcWall, CylinderLampScene, DirectionalLight};
+use crate::scene::{ArcWall, ClosedWall, CylinderLampScene, DirectionalLight};
 use crate::vector::{Vec3, vec3};
 
 pub use beam::Beam;
@@ -115,7 +116,6 @@ impl<S: Scalar> Root<S> {
 impl CylinderCup<f64> {
     /// The cup of a catalogue entry.
     pub fn from_entry(light: &DirectionalLight, wall: &ArcWall) -> Self {
-        let elevation = light.elevation_degrees.to_radians();
         CylinderCup {
             wall: Wall {
                 radius: wall.radius,
@@ -123,11 +123,20 @@ impl CylinderCup<f64> {
                 cos_half_arc: Some(cos(wall.half_arc_degrees.to_radians())),
             },
             reflectance: wall.reflectance,
-            light: Light::Beam(Beam {
-                irradiance: light.irradiance,
-                sin_elevation: sin(elevation),
-                cos_elevation: cos(elevation),
-            }),
+            light: Light::Beam(Beam::of(light)),
+        }
+    }
+
+    /// The closed cup of a catalogue entry.
+    pub fn closed(light: &DirectionalLight, wall: &ClosedWall) -> Self {
+        CylinderCup {
+            wall: Wall {
+                radius: wall.radius,
+                height: Some(wall.height),
+                cos_half_arc: None,
+            },
+            reflectance: wall.reflectance,
+            light: Light::Beam(Beam::of(light)),
         }
     }
 }

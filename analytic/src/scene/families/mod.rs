@@ -1,5 +1,6 @@
 //! One file per kind: its data, its path classes, its closure and its ranges.
 
+mod closed_cup;
 mod concave_sphere;
 mod conic_mirrors;
 mod conic_wall;
@@ -20,6 +21,7 @@ mod stigmatic_refractors;
 mod underwater;
 mod water_waves;
 
+pub use closed_cup::{ClosedCupScene, ClosedWall};
 pub use concave_sphere::{ConcaveSphereScene, SphereCap};
 pub use conic_mirrors::{Conic, ConicMirrorsScene};
 pub use conic_wall::{ConicArc, ConicWallScene};
