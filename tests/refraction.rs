@@ -168,7 +168,9 @@ fn smooth_pixels_are_means_of_point_values() {
             });
             let middle = truth.at(x, y);
             let smooth = |class: usize| {
-                let away = middle[class].singularity.is_none_or(|s| s.distance > 4.0 * size);
+                let away = middle[class]
+                    .singularity
+                    .is_none_or(|s| s.distance > 4.0 * size);
                 away && corners.iter().all(|&(a, b)| {
                     let [x, y] = floor_point(i + 1.4 * a - 0.2, j + 1.4 * b - 0.2);
                     truth.at(x, y)[class].irradiance.roots == middle[class].irradiance.roots
@@ -212,7 +214,10 @@ fn no_light_comes_down_after_one_internal_reflection() {
         };
         for k in 0..=2000 {
             let incidence = core::f64::consts::FRAC_PI_2 * f64::from(k) / 2000.0;
-            assert!(ball.landing_of(incidence, 3).cosine < 0.0, "{index} {incidence}");
+            assert!(
+                ball.landing_of(incidence, 3).cosine < 0.0,
+                "{index} {incidence}"
+            );
         }
     }
 }
@@ -265,17 +270,72 @@ fn a_lens_with_its_focus_on_the_floor_is_reported_as_stigmatic() {
 #[test]
 fn ranges_of_the_refracting_kinds_are_checked() {
     for (name, from, to, parts) in [
-        ("underwater", "[-1.5, -2.1, 1.35]", "[-1.5, -2.1, 1.65]", ["camera.position", "1.6"]),
-        ("underwater", "[0.0, -0.25, 0.0]", "[0.0, -0.25, 1.3]", ["camera.look_at", "horizon"]),
-        ("underwater", "[0.35, 0.25, 2.1]", "[0.35, 0.25, 1.5]", ["light.position", "1.6"]),
-        ("glass-ball", "index = 1.36", "index = 1.1", ["glass.index", "1.15"]),
-        ("glass-ball", "radius = 0.8", "radius = 1.3", ["glass.center", "greater than 1.3"]),
-        ("glass-ball", "[0.1, 0.15, 1.2]", "[0.1, 0.15, 0.9]", ["camera.look_at", "glass ball"]),
-        ("ripple-pool", "amplitude = 0.016", "amplitude = 0.06", ["waves", "0.577"]),
-        ("ripple-pool", "surface_z = 1.85", "surface_z = 0.01", ["water.surface_z", "trough"]),
-        ("ripple-pool", "-1.75, 1.6]", "-1.75, 1.84]", ["camera.position", "z less than"]),
-        ("lens", "half_angle_degrees = 42.0", "half_angle_degrees = 49.0", ["lens.half_angle_degrees", "at most 48"]),
-        ("lens", "defocus = 0.63", "defocus = -0.8", ["lens.defocus", "rim"]),
+        (
+            "underwater",
+            "[-1.5, -2.1, 1.35]",
+            "[-1.5, -2.1, 1.65]",
+            ["camera.position", "1.6"],
+        ),
+        (
+            "underwater",
+            "[0.0, -0.25, 0.0]",
+            "[0.0, -0.25, 1.3]",
+            ["camera.look_at", "horizon"],
+        ),
+        (
+            "underwater",
+            "[0.35, 0.25, 2.1]",
+            "[0.35, 0.25, 1.5]",
+            ["light.position", "1.6"],
+        ),
+        (
+            "glass-ball",
+            "index = 1.36",
+            "index = 1.1",
+            ["glass.index", "1.15"],
+        ),
+        (
+            "glass-ball",
+            "radius = 0.8",
+            "radius = 1.3",
+            ["glass.center", "greater than 1.3"],
+        ),
+        (
+            "glass-ball",
+            "[0.1, 0.15, 1.2]",
+            "[0.1, 0.15, 0.9]",
+            ["camera.look_at", "glass ball"],
+        ),
+        (
+            "ripple-pool",
+            "amplitude = 0.016",
+            "amplitude = 0.06",
+            ["waves", "0.577"],
+        ),
+        (
+            "ripple-pool",
+            "surface_z = 1.85",
+            "surface_z = 0.01",
+            ["water.surface_z", "trough"],
+        ),
+        (
+            "ripple-pool",
+            "-1.75, 1.6]",
+            "-1.75, 1.84]",
+            ["camera.position", "z less than"],
+        ),
+        (
+            "lens",
+            "half_angle_degrees = 42.0",
+            "half_angle_degrees = 49.0",
+            ["lens.half_angle_degrees", "at most 48"],
+        ),
+        (
+            "lens",
+            "defocus = 0.63",
+            "defocus = -0.8",
+            ["lens.defocus", "rim"],
+        ),
         ("lens", "index = 1.52", "index = nan", ["lens.index", "NaN"]),
     ] {
         let text = std::fs::read_to_string(format!("scenes/{name}.toml")).unwrap();
@@ -285,7 +345,10 @@ fn ranges_of_the_refracting_kinds_are_checked() {
         let help = miette::Diagnostic::help(&error).map(|h| h.to_string());
         let complaint = format!("{error} | {}", help.unwrap_or_default());
         for part in parts {
-            assert!(complaint.contains(part), "`{part}` is missing in: {complaint}");
+            assert!(
+                complaint.contains(part),
+                "`{part}` is missing in: {complaint}"
+            );
         }
     }
 }
