@@ -4,8 +4,8 @@ use std::path::Path;
 
 use nephroid_analytic::scene::{
     self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
-    GlassBall, Kind, LensFront, MirrorPillar, PointLight, RectangleMirror, Ripple, Slab, SphereCap,
-    SphereWall, VerticalLight, Water,
+    GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge, PointLight,
+    RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 
@@ -18,6 +18,11 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("cup", include_str!("../scenes/cup.toml")),
     ("pool", include_str!("../scenes/pool.toml")),
     ("slab", include_str!("../scenes/slab.toml")),
+    ("pillar", include_str!("../scenes/pillar.toml")),
+    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
+    ("glass-pillar", include_str!("../scenes/glass-pillar.toml")),
+    ("glass-column", include_str!("../scenes/glass-column.toml")),
+    ("corner", include_str!("../scenes/corner.toml")),
     ("dome", include_str!("../scenes/dome.toml")),
     ("ball", include_str!("../scenes/ball.toml")),
     ("dish", include_str!("../scenes/dish.toml")),
@@ -25,8 +30,6 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
     ("furnace", include_str!("../scenes/furnace.toml")),
     ("underwater", include_str!("../scenes/underwater.toml")),
-    ("pillar", include_str!("../scenes/pillar.toml")),
-    ("conic-wall", include_str!("../scenes/conic-wall.toml")),
     ("glass-ball", include_str!("../scenes/glass-ball.toml")),
     ("ripple-pool", include_str!("../scenes/ripple-pool.toml")),
     ("lens", include_str!("../scenes/lens.toml")),
@@ -106,6 +109,8 @@ kinds! {
     "glass-sphere" => GlassSphere(GlassSphereScene { light: VerticalLight, floor: Floor, glass: GlassBall }),
     "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
+    "glass-pillar" => GlassPillar(GlassPillarScene { light: DirectionalLight, floor: Floor, pillar: GlassCylinder }),
+    "planar-chains" => PlanarChains(PlanarChainsScene { light: PointLight, floor: Floor, wedge: MirrorWedge }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
     "water-waves" => WaterWaves(WaterWavesScene {
         light: VerticalLight, floor: Floor, water: Water, waves: Vec<Ripple>,
@@ -147,18 +152,22 @@ const ALLOWED: &[(&str, &str)] = &[
     ),
     (
         "wall",
-        "a table: height, half_arc_degrees, reflectance, and radius (circular) or axis, parameter, eccentricity, and focus if it is not [0, 0] (conic); or center, radius and albedo (closed sphere)",
+        "a table: height, half_arc_degrees, reflectance and radius (arc) or direction, parameter, eccentricity and focus (conic), or center, radius and albedo (closed sphere)",
+    ),
+    (
+        "pillar",
+        "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
     ),
     ("water", "a table with surface_z and index"),
     ("slab", "a table with bottom, top and index"),
     ("ball", "a table with center, radius and reflectance"),
     (
         "dish",
-        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and center if it is not [0, 0]",
     ),
     (
         "conic",
-        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and center if it is not [0, 0]",
     ),
     ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
@@ -177,7 +186,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
     (
         "eccentricity",
-        "a number from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
+        "a number from 0 to 10 (wall), from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
     ),
     ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
     ("rim_z", "a finite number greater than 0 (metres)"),
@@ -232,10 +241,14 @@ const ALLOWED: &[(&str, &str)] = &[
         "half_arc_degrees",
         "a finite number greater than 0, at most 60 (a circle in the sun) or 180 (a conic)",
     ),
+    ("wedge", "a table with divisor and reflectance"),
+    (
+        "divisor",
+        "a whole number from 1 to 8: the wedge has the angle π/divisor",
+    ),
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
-    ("axis", "two finite numbers: a direction of any length"),
+    ("direction", "two finite numbers: a direction of any length"),
     ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
-    ("eccentricity", "a finite number from 0 to 10"),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

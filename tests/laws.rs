@@ -14,7 +14,7 @@ use toml::{Table, Value};
 
 /// Keys that are no lengths.
 const PURE: [&str; 11] = [
-    "axis",
+    "direction",
     "intensity",
     "irradiance",
     "albedo",
@@ -207,8 +207,9 @@ const HANDED: [&str; 1] = ["planar-chains"];
 /// The scene mirrored at the plane y = 0 has the mirrored irradiance.
 #[test]
 fn irradiance_has_the_symmetry_of_space() {
-    const POINTS: [&str; 9] = [
+    const POINTS: [&str; 10] = [
         "focus",
+        "direction",
         "position",
         "center",
         "look_at",

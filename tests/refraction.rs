@@ -35,6 +35,9 @@ fn land<L: Light, S: Chains>(
 struct OneRoot<'a> {
     entry: &'a Entry,
     chain: usize,
+    /// Photons along either axis of emission, and the step of the differences there.
+    grid: u32,
+    step: f64,
 }
 
 impl Visitor for OneRoot<'_> {
@@ -54,12 +57,9 @@ impl Visitor for OneRoot<'_> {
         let targets = scene.surface.targets(&scene.floor.hull());
         let flux = scene.light.aimed(&targets).flux();
         let (mut compared, mut worst) = (0, 0.0_f64);
-        for k in 0..900 {
-            let (u, v) = (
-                (f64::from(k % 30) + 0.5) / 30.0,
-                (f64::from(k / 30) + 0.5) / 30.0,
-            );
-            let h = 1e-4;
+        for k in 0..self.grid * self.grid {
+            let at = |n: u32| (f64::from(n) + 0.5) / f64::from(self.grid);
+            let (u, v, h) = (at(k % self.grid), at(k / self.grid), self.step);
             let stencil = |du: f64, dv: f64| land(&scene, self.chain, u + du * h, v + dv * h);
             // Next to a rim the map is no longer smooth on the scale of the differences.
             let inside = [(150.0, 0.0), (-150.0, 0.0), (0.0, 150.0), (0.0, -150.0)]
@@ -97,24 +97,27 @@ impl Visitor for OneRoot<'_> {
     }
 }
 
-/// Differences of fourth order with a step of 1e-4 leave less than 1e-8 where the map is as smooth as here.
+/// Differences of fourth order with a step of 1e-4 leave less than 1e-8 where the map is as smooth as here; of a ball's
+/// rim, which reflects to the floor, a narrow ring is left.
 #[test]
 fn where_there_is_one_root_it_is_what_its_ray_says() {
-    for (name, chain, at_least) in [
-        ("underwater", 0, 200),
-        ("slab", 0, 200),
-        ("slab", 1, 200),
-        ("glass-ball", 0, 200),
-        ("glass-ball", 1, 30),
-        ("glass-ball", 2, 100),
-        ("glass-ball", 3, 30),
-        ("ripple-pool", 0, 100),
-        ("lens", 0, 300),
+    for (name, chain, grid, step, at_least) in [
+        ("underwater", 0, 30, 1e-4, 200),
+        ("slab", 0, 30, 1e-4, 200),
+        ("slab", 1, 30, 1e-4, 200),
+        ("glass-ball", 0, 20, 1e-4, 150),
+        ("glass-ball", 1, 60, 1e-5, 30),
+        ("glass-ball", 2, 40, 1e-5, 100),
+        ("glass-ball", 3, 40, 1e-5, 20),
+        ("ripple-pool", 0, 15, 1e-4, 50),
+        ("lens", 0, 30, 1e-4, 300),
     ] {
         let entry = entry::load(name).unwrap();
         let one = OneRoot {
             entry: &entry,
             chain,
+            grid,
+            step,
         };
         let (compared, worst) = visit(&entry, Overrides::default(), one);
         assert!(compared >= at_least, "{name} {chain}: {compared}");
@@ -122,10 +125,9 @@ fn where_there_is_one_root_it_is_what_its_ray_says() {
     }
 }
 
-/// Away from singularities and edges a pixel is the mean of the closed form over it: Gauss's rule with 6 × 6 points.
+/// Away from singularities, ridges and edges a pixel is the mean of the closed form over it: Gauss's rule with 6 × 6 points.
 #[test]
 fn smooth_pixels_are_means_of_point_values() {
-    const SIZE: u32 = 20;
     // Nodes and weights of the rule for [-1, 1] [Abramowitz & Stegun, table 25.4].
     const RULE: [(f64, f64); 3] = [
         (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
@@ -136,14 +138,14 @@ fn smooth_pixels_are_means_of_point_values() {
         .iter()
         .flat_map(|&(t, w)| [(0.5 - 0.5 * t, 0.5 * w), (0.5 + 0.5 * t, 0.5 * w)])
         .collect();
-    for (name, at_least) in [
-        ("underwater", 200),
-        ("glass-ball", 200),
-        ("ripple-pool", 15),
-        ("lens", 60),
+    for (name, size, every, at_least) in [
+        ("underwater", 20, 1, 200),
+        ("glass-ball", 20, 1, 200),
+        ("ripple-pool", 60, 31, 12),
+        ("lens", 20, 1, 60),
     ] {
         let mut scene = entry::load(name).unwrap();
-        (scene.camera.width, scene.camera.height) = (SIZE, SIZE);
+        (scene.camera.width, scene.camera.height) = (size, size);
         let image = truth::image(&scene, 1e-9);
         let truth = FloorTruth::new(&scene).unwrap();
         let film = Film::new(&scene.camera);
@@ -153,14 +155,14 @@ fn smooth_pixels_are_means_of_point_values() {
             [q.x, q.y]
         };
         let mut compared = 0;
-        for p in 0..SIZE * SIZE {
-            let (i, j) = (f64::from(p % SIZE), f64::from(p / SIZE));
+        for p in (0..size * size).step_by(every) {
+            let (i, j) = (f64::from(p % size), f64::from(p / size));
             let [x, y] = floor_point(i + 0.5, j + 0.5);
             let far = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(a, b)| {
                 let [cx, cy] = floor_point(i + a, j + b);
                 libm::hypot(cx - x, cy - y)
             });
-            let size = far.into_iter().fold(0.0, f64::max);
+            let extent = far.into_iter().fold(0.0, f64::max);
             let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.5)];
             let on_floor = corners.iter().all(|&(a, b)| {
                 let [x, y] = floor_point(i + 2.0 * a - 0.5, j + 2.0 * b - 0.5);
@@ -168,12 +170,16 @@ fn smooth_pixels_are_means_of_point_values() {
             });
             let middle = truth.at(x, y);
             let smooth = |class: usize| {
+                let here = middle[class].irradiance;
                 let away = middle[class]
                     .singularity
-                    .is_none_or(|s| s.distance > 4.0 * size);
+                    .is_none_or(|s| s.distance > 4.0 * extent);
                 away && corners.iter().all(|&(a, b)| {
                     let [x, y] = floor_point(i + 1.4 * a - 0.2, j + 1.4 * b - 0.2);
-                    truth.at(x, y)[class].irradiance.roots == middle[class].irradiance.roots
+                    let there = truth.at(x, y)[class].irradiance;
+                    // A ridge that almost folds is too sharp for the rule.
+                    let flat = (there.value - here.value).abs() <= 0.2 * here.value;
+                    here.roots == there.roots && flat
                 })
             };
             if !on_floor {
@@ -251,8 +257,17 @@ fn a_lens_with_its_focus_on_the_floor_is_reported_as_stigmatic() {
         s.lens.defocus = defocus;
         whole(&mut scene)
     });
-    // The film area per floor area differs at the edge of the disc, not the flux: equal to first order only at one place.
-    assert!(focus > 0.0 && near > 0.0);
+    // Seen along the axis all floor counts alike: the mean is the flux, wherever it lands in the frame.
+    assert!((near - focus).abs() <= 1e-8 * near, "{near} {focus}");
+    let Kind::StigmaticRefractors(s) = &scene.kind else {
+        panic!("the lens is a lens");
+    };
+    let (n, rim) = (s.lens.index, s.lens.rim_z() * s.lens.aperture());
+    let frame = 0.4 * libm::tan(75.0_f64.to_radians());
+    let passed = near * frame * frame / s.floor.albedo / (s.light.irradiance * rim * rim);
+    // All that falls on the aperture, but for what is reflected: least of all in the middle.
+    let most = 4.0 * n / ((n + 1.0) * (n + 1.0));
+    assert!(passed < most && passed > 0.9 * most, "{passed} {most}");
     let truth = FloorTruth::new(&scene).unwrap();
     let at = truth.at(0.03, 0.02)[0];
     assert_eq!(at.state(), State::Degenerate);

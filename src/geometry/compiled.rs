@@ -4,8 +4,9 @@ use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
     CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
-    GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene, PlanarMirrorScene,
-    PointLight, StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
+    GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene,
+    PlanarChainsScene, PlanarMirrorScene, PointLight, StigmaticRefractorsScene, UnderwaterScene,
+    VerticalLight, WaterWavesScene,
 };
 
 use super::arc::Arc;
@@ -17,6 +18,7 @@ use super::dish::Dish;
 use super::floor::Floor;
 use super::furnace::Furnace;
 use super::glass_ball::GlassBall;
+use super::glass_pillar::GlassPillar;
 use super::lens::Lens;
 use super::light::{Directional, Light, Point};
 use super::pillar::Pillar;
@@ -29,6 +31,7 @@ use super::specular::{Nothing, Specular};
 use super::sphere_cap::SphereCap;
 use super::underwater::Underwater;
 use super::water::Water;
+use super::wedge::Wedge;
 
 /// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
 pub enum Compiled {
@@ -91,6 +94,10 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::CylinderCup(s) => visitor.scene(build.cylinder_cup(s)),
         Kind::FlatInterface(s) => visitor.scene(build.flat_interface(s)),
         Kind::GlassSlab(s) => visitor.chains(build.glass_slab(s)),
+        Kind::Pillar(s) => visitor.chains(build.pillar(s)),
+        Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
+        Kind::GlassPillar(s) => visitor.chains(build.glass_pillar(s)),
+        Kind::PlanarChains(s) => visitor.chains(build.planar_chains(s)),
         Kind::ConcaveSphere(s) => visitor.chains(build.concave_sphere(s)),
         Kind::ConvexSphere(s) => visitor.chains(build.convex_sphere(s)),
         Kind::Paraboloid(s) => visitor.chains(build.paraboloid(s)),
@@ -99,8 +106,6 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
             visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
         }
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
-        Kind::Pillar(s) => visitor.chains(build.pillar(s)),
-        Kind::ConicWall(s) => visitor.chains(build.conic_wall(s)),
         Kind::GlassSphere(s) => visitor.chains(build.glass_sphere(s)),
         Kind::WaterWaves(s) => visitor.chains(build.water_waves(s)),
         Kind::StigmaticRefractors(s) => visitor.chains(build.stigmatic_refractors(s)),
@@ -199,13 +204,13 @@ impl Build {
 
     fn paraboloid(&self, s: &ParaboloidScene) -> Scene<Point, Dish> {
         let dish = Dish::new(s, self.reflectance(s.dish.reflectance));
-        let light = self.focal(&s.light, s.dish.axis, s.dish.focus_z());
+        let light = self.focal(&s.light, s.dish.center, s.dish.focus_z());
         self.scene(light, dish, &s.floor)
     }
 
     fn conic_mirrors(&self, s: &ConicMirrorsScene) -> Scene<Point, Conic> {
         let conic = Conic::new(s, self.reflectance(s.conic.reflectance));
-        let light = self.focal(&s.light, s.conic.axis, s.conic.light_z());
+        let light = self.focal(&s.light, s.conic.center, s.conic.light_z());
         self.scene(light, conic, &s.floor)
     }
 
@@ -237,5 +242,14 @@ impl Build {
     fn conic_wall(&self, s: &ConicWallScene) -> Scene<Point, ConicWall> {
         let wall = ConicWall::new(s, self.reflectance(s.wall.reflectance));
         self.scene(self.point(&s.light), wall, &s.floor)
+    }
+
+    fn glass_pillar(&self, s: &GlassPillarScene) -> Scene<Directional, GlassPillar> {
+        self.scene(self.directional(&s.light), GlassPillar::new(s), &s.floor)
+    }
+
+    fn planar_chains(&self, s: &PlanarChainsScene) -> Scene<Point, Wedge> {
+        let wedge = Wedge::new(s, self.reflectance(s.wedge.reflectance));
+        self.scene(self.point(&s.light), wedge, &s.floor)
     }
 }

@@ -35,7 +35,7 @@ impl Conic {
         let center_z = conic.image_z + if ellipsoid { a * e } else { -a * e };
         let rim = conic.rim_z - center_z;
         Conic {
-            center: DVec3::new(conic.axis[0], conic.axis[1], center_z),
+            center: DVec3::new(conic.center[0], conic.center[1], center_z),
             across: 1.0 / (1.0 - e * e),
             semi_axis: a,
             range: if ellipsoid {

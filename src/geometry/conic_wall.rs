@@ -28,7 +28,7 @@ impl ConicWall {
     /// Prepares a validated scene's wall; `reflectance` replaces its own.
     pub fn new(scene: &ConicWallScene, reflectance: f64) -> Self {
         let wall = &scene.wall;
-        let axis = DVec2::from_array(wall.axis);
+        let axis = DVec2::from_array(wall.direction);
         ConicWall {
             focus: DVec2::from_array(wall.focus),
             axis: axis / f64::sqrt(axis.dot(axis)),

@@ -29,7 +29,7 @@ impl Dish {
     pub fn new(scene: &ParaboloidScene, reflectance: f64) -> Self {
         let dish = &scene.dish;
         Dish {
-            vertex: DVec3::new(dish.axis[0], dish.axis[1], dish.vertex_z),
+            vertex: DVec3::new(dish.center[0], dish.center[1], dish.vertex_z),
             latus: 4.0 * dish.focal_length,
             inner: dish.inner_radius,
             outer: dish.outer_radius,

@@ -23,7 +23,7 @@ pub(super) fn form(scene: &ConicWallScene) -> impl Form + use<> {
         form: ConicWall {
             x: wall.focus[0],
             y: wall.focus[1],
-            axis: wall.direction(),
+            axis: wall.axis(),
             parameter: wall.parameter,
             eccentricity: wall.eccentricity,
             half_arc: wall.half_arc(),

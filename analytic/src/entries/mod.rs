@@ -13,10 +13,12 @@ mod cylinder_cup;
 mod diffuse;
 mod flat_interface;
 mod furnace;
+mod glass_pillar;
 mod glass_slab;
 mod glass_sphere;
 mod paraboloid;
 mod pillar;
+mod planar_chains;
 mod planar_mirror;
 mod stigmatic_refractors;
 mod strength;
@@ -110,14 +112,16 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::CylinderCup(s) => Arc::new(cylinder_cup::form(s)),
         Kind::FlatInterface(s) => Arc::new(flat_interface::form(s)),
         Kind::GlassSlab(s) => Arc::new(glass_slab::form(s)),
+        Kind::Pillar(s) => Arc::new(pillar::form(s)),
+        Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
+        Kind::GlassPillar(s) => Arc::new(glass_pillar::form(s)),
+        Kind::PlanarChains(s) => Arc::new(planar_chains::form(s)),
         Kind::ConcaveSphere(s) => Arc::new(concave_sphere::form(s)),
         Kind::ConvexSphere(s) => Arc::new(convex_sphere::form(s)),
         Kind::Paraboloid(s) => Arc::new(paraboloid::form(s)),
         Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
         Kind::Furnace(s) => Arc::new(furnace::form(s)),
         Kind::Underwater(s) => Arc::new(underwater::form(s)),
-        Kind::Pillar(s) => Arc::new(pillar::form(s)),
-        Kind::ConicWall(s) => Arc::new(conic_wall::form(s)),
         Kind::GlassSphere(s) => Arc::new(glass_sphere::form(s)),
         Kind::WaterWaves(s) => Arc::new(water_waves::form(s)),
         Kind::StigmaticRefractors(s) => Arc::new(stigmatic_refractors::form(s)),

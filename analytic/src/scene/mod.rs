@@ -6,6 +6,7 @@
 //!
 //! Each kind has a file in [`families`]: its data, its path classes, its closure and its ranges.
 
+mod beside;
 mod camera;
 pub mod families;
 mod frame;
@@ -68,6 +69,14 @@ pub enum Kind {
     FlatInterface(FlatInterfaceScene),
     /// A parallel glass slab between a point light and the floor, camera below it.
     GlassSlab(GlassSlabScene),
+    /// A convex vertical mirror on the floor, under a point light.
+    Pillar(PillarScene),
+    /// A vertical wall over an arc of a conic, under a point light.
+    ConicWall(ConicWallScene),
+    /// A vertical glass cylinder on the floor, under a directional light.
+    GlassPillar(GlassPillarScene),
+    /// Floor and point light in a wedge of two vertical mirrors.
+    PlanarChains(PlanarChainsScene),
     /// A concave spherical cap above the floor, under a point light.
     ConcaveSphere(ConcaveSphereScene),
     /// A mirror ball above the floor, under a point light.
@@ -80,10 +89,6 @@ pub enum Kind {
     Furnace(FurnaceScene),
     /// A flat water surface over the floor, light above it and camera below it.
     Underwater(UnderwaterScene),
-    /// A convex vertical mirror on the floor, under a point light.
-    Pillar(PillarScene),
-    /// A vertical wall over an arc of a conic, under a point light.
-    ConicWall(ConicWallScene),
     /// A glass ball over the floor, in light that comes straight down.
     GlassSphere(GlassSphereScene),
     /// Rippled water over the floor, in light that comes straight down, camera below the water.
@@ -101,14 +106,16 @@ impl Kind {
             Kind::CylinderCup(s) => s,
             Kind::FlatInterface(s) => s,
             Kind::GlassSlab(s) => s,
+            Kind::Pillar(s) => s,
+            Kind::ConicWall(s) => s,
+            Kind::GlassPillar(s) => s,
+            Kind::PlanarChains(s) => s,
             Kind::ConcaveSphere(s) => s,
             Kind::ConvexSphere(s) => s,
             Kind::Paraboloid(s) => s,
             Kind::ConicMirrors(s) => s,
             Kind::Furnace(s) => s,
             Kind::Underwater(s) => s,
-            Kind::Pillar(s) => s,
-            Kind::ConicWall(s) => s,
             Kind::GlassSphere(s) => s,
             Kind::WaterWaves(s) => s,
             Kind::StigmaticRefractors(s) => s,

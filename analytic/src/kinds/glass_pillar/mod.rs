@@ -48,6 +48,7 @@ use crate::kinds::{Estimate, power, rounding_error};
 use crate::optics::{fresnel_reflectance, fresnel_transmittance};
 use crate::roots::{Isolated, Local, for_each_root};
 use crate::scalar::Scalar;
+use crate::scene::{DirectionalLight, GlassCylinder};
 
 /// A glass pillar in the sun.
 #[derive(Clone, Copy, Debug)]
@@ -102,6 +103,23 @@ struct Arrival<S> {
     tau: S,
     entry_z: S,
     spread: S,
+}
+
+impl GlassPillar<f64> {
+    /// The pillar of an entry.
+    pub fn from_entry(light: &DirectionalLight, pillar: &GlassCylinder) -> Self {
+        let elevation = light.elevation_degrees.to_radians();
+        GlassPillar {
+            x: pillar.center[0],
+            y: pillar.center[1],
+            radius: pillar.radius,
+            height: pillar.height,
+            index: pillar.index,
+            irradiance: light.irradiance,
+            sin_elevation: libm::sin(elevation),
+            cos_elevation: libm::cos(elevation),
+        }
+    }
 }
 
 impl<S: Scalar> GlassPillar<S> {

@@ -15,7 +15,7 @@ use libm::{asin, atan2, cos, hypot, sin};
 use serde::{Deserialize, Serialize};
 
 use crate::class::PathClass;
-use crate::scene::frame::Frame;
+use crate::scene::beside::Frame;
 use crate::scene::ranges::{Checked, LARGEST, above, coordinates, invalid, positive, within};
 use crate::scene::{Camera, Closure, Family, Floor, PointLight};
 
@@ -67,8 +67,8 @@ pub struct ConicArc {
     /// The focus (x, y) [m].
     #[serde(default)]
     pub focus: [f64; 2],
-    /// Direction θ = 0 in plan, from the focus to the nearest point of the wall, of any length.
-    pub axis: [f64; 2],
+    /// The axis, θ = 0 in plan, from the focus to the nearest point of the wall, of any length.
+    pub direction: [f64; 2],
     /// Semi-latus rectum p [m].
     pub parameter: f64,
     /// Eccentricity e: 0 circle, below 1 ellipse, 1 parabola, above 1 hyperbola.
@@ -90,8 +90,8 @@ const OPENING: f64 = 0.02;
 
 impl ConicArc {
     /// Unit vector along the axis.
-    pub fn direction(&self) -> (f64, f64) {
-        let [x, y] = self.axis;
+    pub fn axis(&self) -> (f64, f64) {
+        let [x, y] = self.direction;
         let length = hypot(x, y);
         (x / length, y / length)
     }
@@ -107,17 +107,17 @@ impl ConicArc {
 
     /// A position about focus and axis.
     fn local(&self, x: f64, y: f64) -> (f64, f64) {
-        let ((c, s), dx, dy) = (self.direction(), x - self.focus[0], y - self.focus[1]);
+        let ((c, s), dx, dy) = (self.axis(), x - self.focus[0], y - self.focus[1]);
         (dx * c + dy * s, dy * c - dx * s)
     }
 
     fn validate(&self) -> Checked {
         coordinates("wall.focus", &self.focus)?;
-        coordinates("wall.axis", &self.axis)?;
-        if !(hypot(self.axis[0], self.axis[1]) >= 1e-9) {
+        coordinates("wall.direction", &self.direction)?;
+        if !(hypot(self.direction[0], self.direction[1]) >= 1e-9) {
             return Err(invalid(
-                "wall.axis",
-                format!("{:?}", self.axis),
+                "wall.direction",
+                format!("{:?}", self.direction),
                 "a vector of length 1e-9 or more",
             ));
         }
@@ -202,7 +202,7 @@ impl ConicArc {
 
     fn check_frame(&self, camera: &Camera) -> Checked {
         let frame = Frame::new(camera);
-        let (c, s) = self.direction();
+        let (c, s) = self.axis();
         let step = 2.0 * self.end() / f64::from(PIECES);
         for k in 0..PIECES {
             let low = step * f64::from(k) - self.end();

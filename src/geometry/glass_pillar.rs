@@ -1,0 +1,100 @@
+//! A glass pillar: a solid cylinder of smooth dielectric on the floor. Its top, and the floor under it, absorb.
+//!
+//! Chain m has m interactions with the side: one reflection outside, or a way in, m - 2 reflections inside and a way out.
+
+use glam::{DVec2, DVec3};
+use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::{Family, GlassPillarScene};
+
+use super::chains::{Chains, Leg};
+use super::dielectric::refract;
+use super::pillar::Cylinder;
+use super::specular::reflected;
+
+/// The pillar, ready for rays.
+#[derive(Clone, Copy, Debug)]
+pub struct GlassPillar {
+    body: Cylinder,
+    index: f64,
+    classes: &'static [PathClass],
+}
+
+impl GlassPillar {
+    /// Prepares a validated scene's pillar.
+    pub fn new(scene: &GlassPillarScene) -> Self {
+        GlassPillar {
+            body: Cylinder {
+                center: DVec2::from_array(scene.pillar.center),
+                radius: scene.pillar.radius,
+                height: scene.pillar.height,
+            },
+            index: scene.pillar.index,
+            classes: scene.classes(),
+        }
+    }
+
+    /// From the side through the glass to the side again; `None` if the ray ends on the floor before.
+    fn across(&self, point: DVec3, direction: DVec3) -> Option<(DVec3, DVec3)> {
+        let (_, t) = self.body.crossings(point, direction)?;
+        let end = point + direction * t;
+        let outward = (end.truncate() - self.body.center) / self.body.radius;
+        (end.z > 0.0).then(|| (end, -outward.extend(0.0)))
+    }
+
+    /// The way through the glass with `reflections` inside.
+    fn through(&self, point: DVec3, normal: DVec3, d: DVec3, reflections: usize) -> Option<Leg> {
+        let (mut d, reflectance) = refract(d, normal, self.index);
+        let mut weight = 1.0 - reflectance;
+        let (mut point, mut normal) = self.across(point, d)?;
+        for _ in 0..reflections {
+            weight *= refract(d, normal, 1.0 / self.index).1;
+            d = reflected(d, normal);
+            (point, normal) = self.across(point, d)?;
+        }
+        let (out, reflectance) = refract(d, normal, 1.0 / self.index);
+        Some(Leg {
+            origin: point,
+            direction: out,
+            weight: weight * (1.0 - reflectance),
+        })
+    }
+}
+
+impl Chains for GlassPillar {
+    fn classes(&self) -> &'static [PathClass] {
+        self.classes
+    }
+
+    fn follow(&self, chain: usize, origin: DVec3, direction: DVec3) -> Leg {
+        if chain == 0 {
+            let to_floor = -origin.z / direction.z;
+            let free = (direction.z < 0.0) && !self.body.blocks(origin, direction, to_floor);
+            return Leg {
+                origin,
+                direction,
+                weight: f64::from(u8::from(free)),
+            };
+        }
+        let d = direction / f64::sqrt(direction.dot(direction));
+        let Some((point, normal)) = self.body.enter(origin, d) else {
+            return Leg::DARK;
+        };
+        if chain == 1 {
+            return Leg {
+                origin: point,
+                direction: reflected(d, normal),
+                weight: refract(d, normal, self.index).1,
+            };
+        }
+        self.through(point, normal, d, chain - 2)
+            .unwrap_or(Leg::DARK)
+    }
+
+    fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
+        self.body.blocks(origin, direction, t_end)
+    }
+
+    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+        [floor, &self.body.hull()].concat()
+    }
+}
