@@ -22,8 +22,8 @@ fn land<L: Light, S: Chains>(
     u: f64,
     v: f64,
 ) -> Option<[f64; 3]> {
-    let targets = scene.surface.targets(&scene.floor.hull());
-    let (origin, direction) = scene.light.aimed(&targets).ray(u, v);
+    let targets = scene.surface.targets(chain, &scene.floor.hull());
+    let (origin, direction) = scene.light.narrow(&targets).ray(u, v);
     let leg = scene.surface.follow(chain, origin, direction);
     let t = -leg.origin.z / leg.direction.z;
     let at: DVec3 = leg.origin + leg.direction * t;
@@ -54,8 +54,8 @@ impl Visitor for OneRoot<'_> {
 
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output {
         let truth = FloorTruth::new(self.entry).unwrap();
-        let targets = scene.surface.targets(&scene.floor.hull());
-        let flux = scene.light.aimed(&targets).flux();
+        let targets = scene.surface.targets(self.chain, &scene.floor.hull());
+        let flux = scene.light.narrow(&targets).flux();
         let (mut compared, mut worst) = (0, 0.0_f64);
         for k in 0..self.grid * self.grid {
             let at = |n: u32| (f64::from(n) + 0.5) / f64::from(self.grid);

@@ -111,9 +111,12 @@ impl Chains for Conic {
         self.meet(origin, direction).is_some_and(|(t, _)| t < t_end)
     }
 
-    /// The floor and a box around the mirror.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        let mut points = floor.to_vec();
+    /// The floor, or a box around the mirror.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
+        let mut points = Vec::with_capacity(8);
         // r² = (a² - z²)(1 - e²) is largest in the middle of an ellipsoid and at the rim of a hyperboloid.
         let (a, ellipsoid) = (self.semi_axis, self.across > 0.0);
         let (high, widest) = if ellipsoid {

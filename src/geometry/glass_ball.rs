@@ -98,7 +98,10 @@ impl Chains for GlassBall {
         self.meet(origin, direction / length) < t_end * length
     }
 
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
         let corner = |k: usize| {
             let sign = |bit: usize| {
                 if k & bit == 0 {
@@ -109,6 +112,6 @@ impl Chains for GlassBall {
             };
             self.center + DVec3::new(sign(1), sign(2), sign(4))
         };
-        floor.iter().copied().chain((0..8).map(corner)).collect()
+        (0..8).map(corner).collect()
     }
 }

@@ -76,7 +76,7 @@ impl Chains for Lens {
     }
 
     /// The square around the rim, instead of the floor: no other light gets through, and it comes straight down.
-    fn targets(&self, _: &[DVec3]) -> Vec<DVec3> {
+    fn targets(&self, _: usize, _: &[DVec3]) -> Vec<DVec3> {
         let height = (self.screen_z - self.center.z) / self.axes.z;
         let radius = self.axes.x * f64::sqrt(1.0 - height * height);
         let top = self.center.z + self.axes.z;

@@ -102,7 +102,7 @@ impl Chains for Ripples {
     }
 
     /// The floor, wider by how far the steepest slope can send light sideways.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+    fn targets(&self, _: usize, floor: &[DVec3]) -> Vec<DVec3> {
         let steepest = libm::atan(self.slope);
         let lean = steepest - libm::asin(libm::sin(steepest) / self.index);
         let reach = (self.surface_z + self.height) * libm::tan(lean);
