@@ -222,7 +222,7 @@ fn wall_of<S: Scalar>() -> ConicWall<S> {
         panic!("another kind");
     };
     let (number, wall) = (S::from_f64, &scene.wall);
-    let (c, s) = wall.direction();
+    let (c, s) = wall.axis();
     ConicWall {
         x: number(wall.focus[0]),
         y: number(wall.focus[1]),
