@@ -4,8 +4,8 @@ use std::path::Path;
 
 use nephroid_analytic::scene::{
     self, ArcWall, Ball, Camera, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight,
-    GlassCylinder, Kind, MirrorPillar, MirrorWedge, PointLight, RectangleMirror, Slab, SphereCap,
-    SphereWall, Water,
+    GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge, PointLight,
+    RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 
@@ -30,6 +30,9 @@ const CATALOGUE: &[(&str, &str)] = &[
     ("hyperboloid", include_str!("../scenes/hyperboloid.toml")),
     ("furnace", include_str!("../scenes/furnace.toml")),
     ("underwater", include_str!("../scenes/underwater.toml")),
+    ("glass-ball", include_str!("../scenes/glass-ball.toml")),
+    ("ripple-pool", include_str!("../scenes/ripple-pool.toml")),
+    ("lens", include_str!("../scenes/lens.toml")),
 ];
 
 /// Names of the built-in entries.
@@ -103,11 +106,18 @@ kinds! {
     "conic-mirrors" => ConicMirrors(ConicMirrorsScene { light: FocalLight, floor: Floor, conic: Conic }),
     "furnace" => Furnace(FurnaceScene { light: PointLight, wall: SphereWall }),
     "glass-slab" => GlassSlab(GlassSlabScene { light: PointLight, floor: Floor, slab: Slab }),
+    "glass-sphere" => GlassSphere(GlassSphereScene { light: VerticalLight, floor: Floor, glass: GlassBall }),
+    "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
     "pillar" => Pillar(PillarScene { light: PointLight, floor: Floor, pillar: MirrorPillar }),
     "glass-pillar" => GlassPillar(GlassPillarScene { light: DirectionalLight, floor: Floor, pillar: GlassCylinder }),
     "planar-chains" => PlanarChains(PlanarChainsScene { light: PointLight, floor: Floor, wedge: MirrorWedge }),
     "conic-wall" => ConicWall(ConicWallScene { light: PointLight, floor: Floor, wall: ConicArc }),
-    "underwater" => Underwater(UnderwaterScene { light: PointLight, floor: Floor, water: Water }),
+    "water-waves" => WaterWaves(WaterWavesScene {
+        light: VerticalLight, floor: Floor, water: Water, waves: Vec<Ripple>,
+    }),
+    "stigmatic-refractors" => StigmaticRefractors(StigmaticRefractorsScene {
+        light: VerticalLight, floor: Floor, lens: LensFront,
+    }),
 }
 
 /// The kinds, as an error message lists them.
@@ -153,13 +163,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("ball", "a table with center, radius and reflectance"),
     (
         "dish",
-        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and axis if it is not [0, 0]",
+        "a table with vertex_z, focal_length, inner_radius, outer_radius and reflectance, and center if it is not [0, 0]",
     ),
     (
         "conic",
-        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and axis if it is not [0, 0]",
+        "a table with semi_axis, eccentricity, image_z, rim_z and reflectance, and center if it is not [0, 0]",
     ),
-    ("axis", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("vertex_z", "a finite number from 1e-9 to 1e9 (metres)"),
     (
         "focal_length",
@@ -174,10 +183,6 @@ const ALLOWED: &[(&str, &str)] = &[
         "a finite number greater than inner_radius (metres)",
     ),
     ("semi_axis", "a finite number from 1e-9 to 1e9 (metres)"),
-    (
-        "eccentricity",
-        "a number from 0 to 10 (wall), from 0 to 0.999 (ellipsoid) or from 1.001 to 1000 (hyperboloid)",
-    ),
     ("image_z", "a finite number from -1e9 to 1e9 (metres)"),
     ("rim_z", "a finite number greater than 0 (metres)"),
     (
@@ -188,13 +193,30 @@ const ALLOWED: &[(&str, &str)] = &[
         "half_angle_degrees",
         "a finite number greater than 0, at most 90",
     ),
+    (
+        "pillar",
+        "a table with radius and height, reflectance (mirror) or index (glass), and center if it is not [0, 0]",
+    ),
+    (
+        "waves",
+        "a list of tables with amplitude, wave_vector and phase",
+    ),
+    ("amplitude", "a finite number (metres)"),
+    ("wave_vector", "two finite numbers (radians per metre)"),
+    ("phase", "a finite number from -1000 to 1000 (radians)"),
+    (
+        "lens",
+        "a table with defocus, semi_axis, index and half_angle_degrees, and axis if it is not [0, 0]",
+    ),
+    ("defocus", "a finite number from -1e9 to 1e9 (metres)"),
+    ("glass", "a table with center, radius and index"),
     ("bottom", "a finite number from 1e-9 to 1e9 (metres)"),
     ("top", "a finite number greater than bottom (metres)"),
     ("position", "three finite numbers from -1e9 to 1e9 (metres)"),
     ("look_at", "three finite numbers from -1e9 to 1e9 (metres)"),
     (
         "center",
-        "finite numbers from -1e9 to 1e9 (metres): three for a mirror, two for a floor or a pillar",
+        "finite numbers from -1e9 to 1e9 (metres): two for a floor, a pillar, or the axis of a dish or conic, three otherwise",
     ),
     ("normal", "three finite numbers: a direction of any length"),
     (
@@ -222,6 +244,10 @@ const ALLOWED: &[(&str, &str)] = &[
     ("focus", "two finite numbers from -1e9 to 1e9 (metres)"),
     ("direction", "two finite numbers: a direction of any length"),
     ("parameter", "a finite number from 1e-9 to 1e9 (metres)"),
+    (
+        "eccentricity",
+        "a finite number from 0 to 10 (conic wall), or to 1000 and not within 0.001 of 1 (conic of revolution)",
+    ),
     ("field_of_view_degrees", "a finite number from 0.1 to 150"),
     ("surface_z", "a finite number from 1e-9 to 1e9 (metres)"),
     ("index", "a finite number greater than 1, at most 10"),

@@ -81,6 +81,17 @@ impl Chain {
         self.letters.iter().flatten().copied()
     }
 
+    /// The given interactions, of which the first [`MAX_CHAIN`] count.
+    pub const fn of_kinds(kinds: &[Specular]) -> Self {
+        let mut chain = Chain::of(kinds.len());
+        let mut i = 0;
+        while i < chain.len() {
+            chain.letters[i] = Some(kinds[i]);
+            i += 1;
+        }
+        chain
+    }
+
     fn push(&mut self, s: Specular) -> bool {
         if self.len() == MAX_CHAIN {
             return false;
@@ -122,15 +133,13 @@ impl PathClass {
         }
     }
 
-    /// `L ... D E` with these interactions on the light's side, in the order of the light (at most [`MAX_CHAIN`]).
-    pub const fn caustic(light: &[Specular]) -> Self {
-        let mut class = Self::new(light.len(), 0);
-        let mut i = 0;
-        while i < class.light.length as usize {
-            class.light.letters[i] = Some(light[i]);
-            i += 1;
+    /// `L`, the given interactions, `DE`.
+    pub const fn caustic(kinds: &[Specular]) -> Self {
+        PathClass {
+            eye: Chain::EMPTY,
+            light: Chain::of_kinds(kinds),
+            diffuse: 1,
         }
-        class
     }
 
     /// Number of edges from the light to the eye.
@@ -239,6 +248,16 @@ mod tests {
             "LSSSSSSSSSSSSSSSDE",
         ] {
             assert!(text.parse::<PathClass>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn kinds_of_interactions_are_told() {
+        const R: Specular = Specular::Reflection;
+        const T: Specular = Specular::Transmission;
+        for (kinds, text) in [(&[][..], "LDE"), (&[R], "LRDE"), (&[T, R, R, T], "LTRRTDE")] {
+            assert_eq!(PathClass::caustic(kinds).to_string(), text);
+            assert_eq!(text.parse(), Ok(PathClass::caustic(kinds)));
         }
     }
 

@@ -25,7 +25,8 @@ pub struct DoubleDouble {
     pub low: f64,
 }
 
-fn two_sum(a: f64, b: f64) -> DoubleDouble {
+/// `a + b` exactly, barring overflow.
+pub(crate) fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let sum = a + b;
     let v = sum - a;
     DoubleDouble {
@@ -48,7 +49,8 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-fn two_product(a: f64, b: f64) -> DoubleDouble {
+/// `a b` exactly, barring over- and underflow.
+pub(crate) fn two_product(a: f64, b: f64) -> DoubleDouble {
     let product = a * b;
     let ((ah, al), (bh, bl)) = (split(a), split(b));
     DoubleDouble {

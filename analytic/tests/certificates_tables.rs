@@ -1,7 +1,8 @@
 //! The certificates against the committed 30-digit tables: every value of every point and view lies in its enclosure,
 //! which is narrow away from singularities, and the number of rays of each class is proven.
 
-use nephroid_analytic::certificate::scene::{Claim, Scene};
+use nephroid_analytic::certificate::claims::Claim;
+use nephroid_analytic::certificate::scene::Scene;
 use nephroid_analytic::certificate::source::Source;
 use nephroid_analytic::enclosure::Enclosure;
 use nephroid_analytic::scalar::Scalar;

@@ -8,7 +8,9 @@ use nephroid_analytic::camera::{Bounded, Film};
 use nephroid_analytic::flux::{Bundle, FluxImage, MARGINS, Ray};
 use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::quadrature::gauss_legendre;
-use nephroid_analytic::scene::{ArcWall, Camera, DirectionalLight, Entry, Floor, Kind};
+use nephroid_analytic::scene::{
+    ArcWall, Camera, CylinderCupScene, DirectionalLight, Entry, Floor, Kind,
+};
 use nephroid_analytic::vector::vec3;
 
 const RADIUS: f64 = 1.2;
@@ -22,7 +24,7 @@ fn cup(size: u32) -> Entry {
     Entry {
         name: "cup".to_owned(),
         title: String::new(),
-        kind: Kind::CylinderCup {
+        kind: Kind::CylinderCup(CylinderCupScene {
             light: DirectionalLight {
                 elevation_degrees: ELEVATION,
                 irradiance: IRRADIANCE,
@@ -38,7 +40,7 @@ fn cup(size: u32) -> Entry {
                 half_arc_degrees: ARC,
                 reflectance: REFLECTANCE,
             },
-        },
+        }),
         camera: Camera {
             position: [-1.9, -0.9, 2.7],
             look_at: [0.76, -0.02, 0.13],
@@ -81,7 +83,7 @@ fn image(size: u32) -> FluxImage {
     let entry = cup(size);
     FluxImage::new(
         &entry.camera,
-        entry.kind.floor(),
+        entry.kind.floor().expect("a floor"),
         vec![vec![Arc::new(Caustic)]],
     )
 }

@@ -6,7 +6,9 @@ use nephroid_analytic::camera::Bounded;
 use nephroid_analytic::flux::direct::FloorLight;
 use nephroid_analytic::flux::{Bundle, FluxImage, MARGINS, Ray};
 use nephroid_analytic::pixel::PixelTruth;
-use nephroid_analytic::scene::{Camera, Entry, Floor, Kind, PointLight, RectangleMirror};
+use nephroid_analytic::scene::{
+    Camera, DiffuseScene, Entry, Floor, Kind, PlanarMirrorScene, PointLight, RectangleMirror,
+};
 
 fn camera(size: u32) -> Camera {
     Camera {
@@ -56,13 +58,13 @@ fn direct_light_agrees_with_polygons() {
     let entry = Entry {
         name: "floor".to_owned(),
         title: String::new(),
-        kind: Kind::Diffuse {
+        kind: Kind::Diffuse(DiffuseScene {
             light: PointLight {
                 position: LIGHT,
                 intensity: 2.3,
             },
             floor: floor.clone(),
-        },
+        }),
         camera: camera(64),
     };
     let light = FloorLight::new(&floor, |x, y| {
@@ -111,7 +113,7 @@ fn mirrored_light_agrees_with_polygons() {
     let entry = Entry {
         name: "mirror-wall".to_owned(),
         title: String::new(),
-        kind: Kind::PlanarMirror {
+        kind: Kind::PlanarMirror(PlanarMirrorScene {
             light: PointLight {
                 position: LIGHT,
                 intensity: 1.0,
@@ -125,7 +127,7 @@ fn mirrored_light_agrees_with_polygons() {
                 half_height: 0.5,
                 reflectance: 1.0,
             },
-        },
+        }),
         camera: camera(64),
     };
     let image = FluxImage::new(&camera(64), &floor, vec![vec![Arc::new(Wall)]]);

@@ -30,6 +30,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         Some(name) => vec![by_name(name, &Default::default())?],
         None => all(),
     };
+    let closure = entry.kind.closure();
     let plans: Vec<_> = integrators.iter().map(|i| (i, i.plan(&entry))).collect();
     if args.json {
         let classes: Vec<_> = plans
@@ -51,6 +52,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
             "schema": "nephroid-explain/1",
             "scene": entry.name,
             "kind": entry.kind.name(),
+            "closure": { "longest": closure.longest, "reason": closure.reason },
             "classes": classes,
         });
         super::print(&format!("{answer:#}"));
@@ -62,6 +64,11 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         entry.kind.name(),
         entry.title
     ));
+    let complete = match closure.longest {
+        Some(edges) => format!("complete up to paths of {edges} edges:"),
+        None => "complete, paths of any length:".to_owned(),
+    };
+    super::print(&with_wrapped(&complete, closure.reason));
     for (integrator, plan) in &plans {
         super::print(&format!("\n{}: {}", integrator.name(), integrator.title()));
         for c in plan {

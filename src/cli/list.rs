@@ -23,7 +23,14 @@ pub fn run(args: &Args) -> Result<u8, Error> {
             .iter()
             .map(|e| {
                 let classes: Vec<_> = e.kind.classes().iter().map(ToString::to_string).collect();
-                json!({ "name": e.name, "kind": e.kind.name(), "title": e.title, "classes": classes })
+                let closure = e.kind.closure();
+                json!({
+                    "name": e.name,
+                    "kind": e.kind.name(),
+                    "title": e.title,
+                    "classes": classes,
+                    "closure": { "longest": closure.longest, "reason": closure.reason },
+                })
             })
             .collect();
         super::print(&json!({ "schema": "nephroid-list/1", "scenes": scenes }).to_string());
@@ -32,7 +39,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     for e in &entries {
         let classes: Vec<_> = e.kind.classes().iter().map(ToString::to_string).collect();
         super::print(&format!(
-            "{:<12} {:<15} {:<24} {}",
+            "{:<12} {:<20} {:<34} {}",
             e.name,
             e.kind.name(),
             classes.join(" "),

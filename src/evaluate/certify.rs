@@ -6,7 +6,8 @@
 
 use std::collections::BTreeSet;
 
-use nephroid_analytic::certificate::scene::{Claim, Scene};
+use nephroid_analytic::certificate::claims::Claim;
+use nephroid_analytic::certificate::scene::Scene;
 use nephroid_analytic::certificate::source::Source;
 use serde_json::Value;
 

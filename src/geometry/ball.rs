@@ -70,9 +70,12 @@ impl Chains for Ball {
             .is_some_and(|t| t > 0.0 && t < t_end)
     }
 
-    /// The floor and a box around the ball.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        let mut points = floor.to_vec();
+    /// The floor, or a box around the ball.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
+        let mut points = Vec::with_capacity(8);
         for k in 0..8 {
             let sign = |axis: usize| if k >> axis & 1 == 0 { -1.0 } else { 1.0 };
             points.push(self.center + DVec3::new(sign(0), sign(1), sign(2)) * self.radius);

@@ -38,6 +38,6 @@ pub trait Chains: Copy + Send + Sync + 'static {
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool;
 
     /// Points whose convex hull, seen from the light, contains every direction (or, for parallel light, every ray) that
-    /// reaches the floor by any chain; `floor` are the floor's corners.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3>;
+    /// reaches a part of the floor by a chain; `floor` are the corners of that part.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3>;
 }

@@ -4,8 +4,9 @@ use glam::DVec3;
 use nephroid_analytic::scene::{
     Camera, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene,
     CylinderCupScene, DiffuseScene, DirectionalLight, Entry, FlatInterfaceScene, FocalLight,
-    GlassPillarScene, GlassSlabScene, Kind, ParaboloidScene, PillarScene, PlanarChainsScene,
-    PlanarMirrorScene, PointLight, UnderwaterScene,
+    GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene,
+    PlanarChainsScene, PlanarMirrorScene, PointLight, StigmaticRefractorsScene, UnderwaterScene,
+    VerticalLight, WaterWavesScene,
 };
 
 use super::arc::Arc;
@@ -16,11 +17,14 @@ use super::conic_wall::ConicWall;
 use super::dish::Dish;
 use super::floor::Floor;
 use super::furnace::Furnace;
+use super::glass_ball::GlassBall;
 use super::glass_pillar::GlassPillar;
+use super::lens::Lens;
 use super::light::{Directional, Light, Point};
 use super::pillar::Pillar;
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
+use super::ripples::Ripples;
 use super::scene::{Overrides, Scene};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
@@ -102,6 +106,9 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
             visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
         }
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
+        Kind::GlassSphere(s) => visitor.chains(build.glass_sphere(s)),
+        Kind::WaterWaves(s) => visitor.chains(build.water_waves(s)),
+        Kind::StigmaticRefractors(s) => visitor.chains(build.stigmatic_refractors(s)),
     }
 }
 
@@ -148,6 +155,13 @@ impl Build {
         }
     }
 
+    fn vertical(&self, light: &VerticalLight) -> Directional {
+        Directional {
+            travel: DVec3::NEG_Z,
+            irradiance: self.overrides.light_strength.unwrap_or(light.irradiance),
+        }
+    }
+
     fn reflectance(&self, own: f64) -> f64 {
         self.overrides.reflectance.unwrap_or(own)
     }
@@ -190,18 +204,34 @@ impl Build {
 
     fn paraboloid(&self, s: &ParaboloidScene) -> Scene<Point, Dish> {
         let dish = Dish::new(s, self.reflectance(s.dish.reflectance));
-        let light = self.focal(&s.light, s.dish.axis, s.dish.focus_z());
+        let light = self.focal(&s.light, s.dish.center, s.dish.focus_z());
         self.scene(light, dish, &s.floor)
     }
 
     fn conic_mirrors(&self, s: &ConicMirrorsScene) -> Scene<Point, Conic> {
         let conic = Conic::new(s, self.reflectance(s.conic.reflectance));
-        let light = self.focal(&s.light, s.conic.axis, s.conic.light_z());
+        let light = self.focal(&s.light, s.conic.center, s.conic.light_z());
         self.scene(light, conic, &s.floor)
     }
 
     fn glass_slab(&self, s: &GlassSlabScene) -> Scene<Point, Slab> {
         self.scene(self.point(&s.light), Slab::new(s), &s.floor)
+    }
+
+    fn glass_sphere(&self, s: &GlassSphereScene) -> Scene<Directional, GlassBall> {
+        self.scene(self.vertical(&s.light), GlassBall::new(s), &s.floor)
+    }
+
+    fn water_waves(&self, s: &WaterWavesScene) -> Scene<Directional, Ripples> {
+        self.scene(self.vertical(&s.light), Ripples::new(s), &s.floor)
+    }
+
+    fn stigmatic_refractors(&self, s: &StigmaticRefractorsScene) -> Scene<Directional, Lens> {
+        self.scene(self.vertical(&s.light), Lens::new(s), &s.floor)
+    }
+
+    fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
+        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
     }
 
     fn pillar(&self, s: &PillarScene) -> Scene<Point, Pillar> {
@@ -221,9 +251,5 @@ impl Build {
     fn planar_chains(&self, s: &PlanarChainsScene) -> Scene<Point, Wedge> {
         let wedge = Wedge::new(s, self.reflectance(s.wedge.reflectance));
         self.scene(self.point(&s.light), wedge, &s.floor)
-    }
-
-    fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
-        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
     }
 }

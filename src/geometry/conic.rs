@@ -35,7 +35,7 @@ impl Conic {
         let center_z = conic.image_z + if ellipsoid { a * e } else { -a * e };
         let rim = conic.rim_z - center_z;
         Conic {
-            center: DVec3::new(conic.axis[0], conic.axis[1], center_z),
+            center: DVec3::new(conic.center[0], conic.center[1], center_z),
             across: 1.0 / (1.0 - e * e),
             semi_axis: a,
             range: if ellipsoid {
@@ -111,9 +111,12 @@ impl Chains for Conic {
         self.meet(origin, direction).is_some_and(|(t, _)| t < t_end)
     }
 
-    /// The floor and a box around the mirror.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        let mut points = floor.to_vec();
+    /// The floor, or a box around the mirror.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
+        let mut points = Vec::with_capacity(8);
         // r² = (a² - z²)(1 - e²) is largest in the middle of an ellipsoid and at the rim of a hyperboloid.
         let (a, ellipsoid) = (self.semi_axis, self.across > 0.0);
         let (high, widest) = if ellipsoid {

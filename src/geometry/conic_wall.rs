@@ -119,8 +119,11 @@ impl Chains for ConicWall {
             .any(|t| (t > 0.0) & (t < t_end) && self.on_wall(origin, direction, t).is_some())
     }
 
-    /// The floor, and the corners of a polygon of tangents about the arc.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+    /// The floor, or the corners of a polygon of tangents about the arc.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
         const PIECES: u32 = 16;
         let step = 2.0 * self.half_arc / f64::from(PIECES);
         // The tangent at θ is (e + cos θ, sin θ)·q = p.
@@ -136,7 +139,7 @@ impl Chains for ConicWall {
             let (m, n) = (tangent(k), tangent(k + 1));
             DVec2::new(n.y - m.y, m.x - n.x) * (self.parameter / m.perp_dot(n))
         };
-        let mut corners = floor.to_vec();
+        let mut corners = Vec::new();
         let polygon = (0..PIECES).map(meet).chain([end(0), end(PIECES)]);
         for q in polygon {
             let plan = self.focus + self.axis * q.x + self.axis.perp() * q.y;

@@ -29,7 +29,7 @@ impl Dish {
     pub fn new(scene: &ParaboloidScene, reflectance: f64) -> Self {
         let dish = &scene.dish;
         Dish {
-            vertex: DVec3::new(dish.axis[0], dish.axis[1], dish.vertex_z),
+            vertex: DVec3::new(dish.center[0], dish.center[1], dish.vertex_z),
             latus: 4.0 * dish.focal_length,
             inner: dish.inner_radius,
             outer: dish.outer_radius,
@@ -97,9 +97,12 @@ impl Chains for Dish {
             .any(|t| t > 0.0 && t < t_end && self.is_silvered(origin, direction, t))
     }
 
-    /// The floor and a box around the mirror.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        let mut points = floor.to_vec();
+    /// The floor, or a box around the mirror.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
+        let mut points = Vec::with_capacity(8);
         let low = -self.outer * self.outer / self.latus;
         for z in [low, 0.0] {
             for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {

@@ -41,7 +41,68 @@ impl Emitter for Cap {
     }
 }
 
+/// Uniform over the directions from a point that are within an angle of an axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Cone {
+    position: DVec3,
+    /// The axis last; orthonormal.
+    frame: [DVec3; 3],
+    /// 1 - cos of the angle.
+    extent: f64,
+    flux: f64,
+}
+
+impl Emitter for Cone {
+    #[inline(always)]
+    fn ray(&self, u: f64, v: f64) -> (DVec3, DVec3) {
+        // 1 - cos θ, from which sin² θ has no cancellation next to the axis.
+        let down = self.extent * v;
+        let r = f64::sqrt(down * (2.0 - down));
+        let (s, c) = sin_cos_of_turns(u);
+        let [e1, e2, axis] = self.frame;
+        let direction = e1 * (r * c) + e2 * (r * s) + axis * (1.0 - down);
+        (self.position, direction)
+    }
+
+    fn flux(&self) -> f64 {
+        self.flux
+    }
+}
+
 impl Point {
+    /// Uniform over a cone that contains the convex hull of `targets`, about the mean of their directions; over the sphere
+    /// if that is wider than a hemisphere. (A narrower cone is convex: it contains the hull of what it contains.)
+    pub fn cone(&self, targets: &[DVec3]) -> Cone {
+        let towards = |&target: &DVec3| {
+            let d = target - self.position;
+            d / f64::sqrt(d.dot(d))
+        };
+        let sum: DVec3 = targets.iter().map(towards).sum();
+        let length = f64::sqrt(sum.dot(sum));
+        let axis = sum / length;
+        // A target at the light itself gives NaN, and the sphere. The margin keeps the border inside.
+        let lowest = targets.iter().map(|t| towards(t).dot(axis) - 1e-12);
+        let lowest = lowest.fold(1.0, |a, b| if b >= a { a } else { b });
+        let (axis, extent) = if lowest > 0.0 {
+            (axis, 1.0 - lowest)
+        } else {
+            (DVec3::NEG_Z, 2.0)
+        };
+        let aside = if axis.z.abs() > 0.5 {
+            DVec3::X
+        } else {
+            DVec3::Z
+        };
+        let e1 = axis.cross(aside);
+        let e1 = e1 / f64::sqrt(e1.dot(e1));
+        Cone {
+            position: self.position,
+            frame: [e1, axis.cross(e1), axis],
+            extent,
+            flux: self.intensity * TAU * extent,
+        }
+    }
+
     /// Uniform over the sphere: density 1/(4π) per steradian.
     pub fn everywhere(&self) -> Cap {
         self.cap(1.0)
@@ -145,6 +206,44 @@ mod tests {
         assert!(cap.extent < 1.0);
         assert_eq!(light.towards_hull(&[DVec3::new(0.0, 1.0, 2.5)]).extent, 2.0);
         assert_eq!(light.everywhere().extent, 2.0);
+    }
+
+    #[test]
+    fn a_cone_contains_what_it_is_aimed_at_and_nothing_far_from_it() {
+        let light = Point {
+            position: DVec3::new(0.25, 0.0, 2.0),
+            intensity: 3.0,
+        };
+        let targets = [
+            DVec3::new(1.0, 2.0, 3.0),
+            DVec3::new(1.5, 2.5, 2.5),
+            DVec3::new(0.5, 2.5, 3.5),
+        ];
+        let cone = light.cone(&targets);
+        assert!((cone.flux() / (3.0 * TAU * cone.extent) - 1.0).abs() < 1e-15);
+        let axis = cone.frame[2];
+        for target in targets {
+            let d = target - light.position;
+            assert!(1.0 - d.dot(axis) / d.length() <= cone.extent);
+        }
+        assert!(cone.extent < 0.1);
+        // Uniform over the cap: the mean of the directions is on the axis, half way down.
+        let (mut mean, n) = (DVec3::ZERO, 64);
+        for k in 0..n * n {
+            let at = |i: i32| (f64::from(i) + 0.5) / f64::from(n);
+            let (origin, d) = cone.ray(at(k % n), at(k / n));
+            assert!(origin == light.position && (d.length() - 1.0).abs() < 1e-14);
+            assert!(1.0 - d.dot(axis) <= cone.extent * (1.0 + 1e-14));
+            mean += d / f64::from(n * n);
+        }
+        assert!((mean - axis * (1.0 - 0.5 * cone.extent)).length() < 1e-12);
+        // All around, and at the light itself: the sphere.
+        for wide in [
+            [DVec3::new(9.0, 0.0, 2.0), DVec3::new(-9.0, 0.0, 2.1)],
+            [light.position; 2],
+        ] {
+            assert_eq!(light.cone(&wide).extent, 2.0);
+        }
     }
 
     #[test]

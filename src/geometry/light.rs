@@ -2,15 +2,20 @@
 
 use glam::DVec3;
 
-use super::emission::{Beam, Cap, Emitter};
+use super::emission::{Beam, Cap, Cone, Emitter};
 
 /// A light that illuminates a point from one direction.
 pub trait Light: Copy + Send + Sync + 'static {
     /// How photons start.
     type Emitter: Emitter;
+    /// How photons start that are aimed at one thing.
+    type Narrow: Emitter;
 
     /// Photons over everything that can reach the convex hull of `targets`, and little else.
     fn aimed(&self, targets: &[DVec3]) -> Self::Emitter;
+
+    /// Photons over the smallest cone (or beam) about the convex hull of `targets`.
+    fn narrow(&self, targets: &[DVec3]) -> Self::Narrow;
 
     /// Photons with the density of the tables of expectations: over the whole sphere from a point light; over a
     /// cross-section that covers the targets from a directional one.
@@ -35,9 +40,14 @@ pub struct Point {
 
 impl Light for Point {
     type Emitter = Cap;
+    type Narrow = Cone;
 
     fn aimed(&self, targets: &[DVec3]) -> Cap {
         self.towards_hull(targets)
+    }
+
+    fn narrow(&self, targets: &[DVec3]) -> Cone {
+        self.cone(targets)
     }
 
     fn unaimed(&self, _: &[DVec3]) -> Cap {
@@ -66,8 +76,13 @@ pub struct Directional {
 
 impl Light for Directional {
     type Emitter = Beam;
+    type Narrow = Beam;
 
     fn aimed(&self, targets: &[DVec3]) -> Beam {
+        self.towards_hull(targets)
+    }
+
+    fn narrow(&self, targets: &[DVec3]) -> Beam {
         self.towards_hull(targets)
     }
 

@@ -130,7 +130,11 @@ impl Chains for Pillar {
         self.body.blocks(origin, direction, t_end)
     }
 
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        [floor, &self.body.hull()].concat()
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            floor.to_vec()
+        } else {
+            self.body.hull()
+        }
     }
 }

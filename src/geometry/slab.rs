@@ -64,7 +64,7 @@ impl Chains for Slab {
 
     /// In the slab a ray is steeper than in air: what is raised by the thickness is seen at least as far from the
     /// vertical.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+    fn targets(&self, _: usize, floor: &[DVec3]) -> Vec<DVec3> {
         let raised = DVec3::new(0.0, 0.0, self.top - self.bottom);
         floor.iter().map(|&corner| corner + raised).collect()
     }

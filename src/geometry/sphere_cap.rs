@@ -89,9 +89,12 @@ impl Chains for SphereCap {
             .any(|&t| t > 0.0 && t < t_end && self.on_cap(origin, direction, t))
     }
 
-    /// The floor and a box around the cap.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        let mut points = floor.to_vec();
+    /// The floor, or a box around the cap.
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
+        let mut points = Vec::with_capacity(8);
         let low = self.center - DVec3::new(self.radius, self.radius, self.center.z - self.rim_z);
         let high = self.center + DVec3::splat(self.radius);
         for k in 0..8 {

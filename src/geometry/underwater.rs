@@ -52,7 +52,7 @@ impl Chains for Underwater {
 
     /// In the air a ray is flatter than the straight line to where it lands, and steeper than the line to the point of the
     /// surface above that.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
+    fn targets(&self, _: usize, floor: &[DVec3]) -> Vec<DVec3> {
         let raised = floor
             .iter()
             .map(|&corner| DVec3::new(corner.x, corner.y, self.surface_z));

@@ -75,19 +75,22 @@ impl Chains for Wedge {
     }
 
     /// The floor and its images: a chain of reflections is a straight line to one of them.
-    fn targets(&self, floor: &[DVec3]) -> Vec<DVec3> {
-        let mut corners = floor.to_vec();
+    fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
+        if chain == 0 {
+            return floor.to_vec();
+        }
+        let mut corners = Vec::with_capacity(2 * floor.len());
         let mut images = floor.to_vec();
-        // The images by up to m reflections, beginning with either mirror.
+        // The images by as many reflections, beginning with either mirror.
         for first in 0..2 {
             images.copy_from_slice(floor);
-            for k in 0..self.classes.len() {
+            for k in 0..chain {
                 let normal = self.normals[(first + k) % 2];
                 for p in &mut images {
                     *p = reflected(*p, normal);
                 }
-                corners.extend_from_slice(&images);
             }
+            corners.extend_from_slice(&images);
         }
         corners
     }

@@ -21,19 +21,46 @@ use super::settings::Defect;
 /// Light tracing along chains.
 pub(super) struct LightChains<L: Light, S> {
     scene: Scene<L, S>,
-    emitter: L::Emitter,
+    /// One for each chain: photons are aimed at what the chain meets first, on its way to the floor that is seen.
+    emitters: Vec<L::Narrow>,
     defect: Defect,
 }
 
 impl<L: Light, S: Chains> LightChains<L, S> {
     pub(super) fn new(scene: Scene<L, S>, defect: Defect) -> Self {
-        let targets = scene.surface.targets(&scene.floor.hull());
+        let seen = seen_floor(&scene);
+        let aimed = |chain| scene.light.narrow(&scene.surface.targets(chain, &seen));
         LightChains {
-            emitter: scene.light.aimed(&targets),
+            emitters: (0..scene.surface.classes().len()).map(aimed).collect(),
             scene,
             defect,
         }
     }
+}
+
+/// Corners of a rectangle of the floor that contains all of it that is in the frame.
+fn seen_floor<L, S>(scene: &Scene<L, S>) -> Vec<DVec3> {
+    let mut corners = scene.floor.hull();
+    let (columns, rows) = scene.camera.size();
+    let eye = scene.camera.position;
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for (u, v) in [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)] {
+        let direction = scene.camera.direction(u, v);
+        let t = Floor::meet(eye, direction);
+        if !(t < f64::INFINITY) {
+            // The horizon is in the frame.
+            return corners;
+        }
+        let point = eye + direction * t;
+        (low, high) = (low.min(point), high.max(point));
+    }
+    for corner in &mut corners {
+        // Rounding at the frame's border: a margin far above it.
+        let margin = 1e-9 * (high - low);
+        corner.x = corner.x.min(high.x + margin.x).max(low.x - margin.x);
+        corner.y = corner.y.min(high.y + margin.y).max(low.y - margin.y);
+    }
+    corners
 }
 
 impl<L: Light, S: Chains> Prepared for LightChains<L, S> {
@@ -47,9 +74,11 @@ impl<L: Light, S: Chains> Prepared for LightChains<L, S> {
         } = &self.scene;
         let chains: Vec<_> = (0..)
             .zip(surface.classes())
-            .filter_map(|(chain, &class)| {
-                let scale = self.emitter.flux() * floor.bsdf * self.defect.class_scale(class);
-                film.layer_of(class).map(|layer| (chain, layer, scale))
+            .zip(&self.emitters)
+            .filter_map(|((chain, &class), emitter)| {
+                let scale = emitter.flux() * floor.bsdf * self.defect.class_scale(class);
+                film.layer_of(class)
+                    .map(|layer| (chain, layer, scale, emitter))
             })
             .collect();
         let stream = Stream::new(seed, iteration);
@@ -58,8 +87,8 @@ impl<L: Light, S: Chains> Prepared for LightChains<L, S> {
             let live = (paths - first).min(BLOCK as u64) as usize;
             stream.pairs(first, Dimension::Emission, &mut u, &mut v);
             for (&u, &v) in u.iter().zip(&v).take(live) {
-                let (origin, direction) = self.emitter.ray(u, v);
-                for &(chain, layer, scale) in &chains {
+                for &(chain, layer, scale, emitter) in &chains {
+                    let (origin, direction) = emitter.ray(u, v);
                     let leg = surface.follow(chain, origin, direction);
                     let t = Floor::meet(leg.origin, leg.direction);
                     if !(leg.weight > 0.0 && t < f64::INFINITY) {

@@ -11,14 +11,18 @@
 //!
 //! Functions that return an enclosure end in `_enclosed`.
 
+pub mod claims;
 pub mod conic_mirrors;
+pub mod conic_wall;
 pub mod cylinder_cup;
 pub mod diffuse;
 pub mod flat_interface;
+pub mod glass_pillar;
 pub mod glass_slab;
 pub mod glass_sphere;
 pub mod layers;
 pub mod paraboloid;
+pub mod pillar;
 pub mod planar_chains;
 pub mod planar_mirror;
 pub mod radiometry;

@@ -1,8 +1,10 @@
 //! From a configuration of a reference table to the proof of every value at a point or of a view.
 //!
 //! Values are named as in `nephroid evaluate`: `E_direct`, `E_caustic`, `L_total`, `paths.LSDE.E`,
-//! `paths.LSDE.roots.0.E` and so on; a value that the scene does not have is not there.
+//! `paths.LSDE.roots.0.E` and so on; a value that the scene does not have is not there. Should any formula on the way ever
+//! compare enclosures that overlap, nothing is claimed at all: see [`decided`].
 
+use crate::certificate::claims::{Claim, Claims, Light};
 use crate::certificate::conic_mirrors::ConicMirror;
 use crate::certificate::cylinder_cup::{CylinderCup, Flatland};
 use crate::certificate::diffuse::{Floor, Sphere, furnace_enclosed};
@@ -18,21 +20,12 @@ use crate::certificate::sphere_mirror::SphereMirror;
 use crate::certificate::stigmatic_refractors::StigmaticRefractor;
 use crate::certificate::water_waves::WaterWaves;
 use crate::certificate::{Certified, Lit};
-use crate::enclosure::Enclosure;
+use crate::enclosure::{Enclosure, decided};
 use crate::scalar::Scalar;
 use crate::vector::vec3;
 
 /// Parts of a view's receiver point along either axis.
 const PIECES: u32 = 4;
-
-/// A value with its name.
-#[derive(Clone, Debug)]
-pub struct Claim {
-    /// The name.
-    pub key: String,
-    /// The proof.
-    pub certified: Certified,
-}
 
 /// A receiver point that a camera sees by way of a specular surface.
 #[derive(Clone, Copy, Debug)]
@@ -45,17 +38,6 @@ pub struct Seen {
     pub at: Point,
     /// Whether the camera sees a point at all.
     pub arrives: Lit,
-}
-
-/// All light at a point.
-#[derive(Clone, Debug, Default)]
-pub struct Light {
-    /// Light that meets no specular surface, where the scene defines it.
-    pub direct: Option<Certified>,
-    /// Each listed path class.
-    pub classes: Vec<(String, Bundle)>,
-    /// Sums of unbounded series and the like, by name.
-    pub further: Vec<(String, Certified)>,
 }
 
 /// A configuration of a reference table.
@@ -199,7 +181,9 @@ impl Scene {
 
     /// Every value at the point of a table; empty if it cannot be read.
     pub fn point_enclosed(&self, point: &dyn Source) -> Vec<Claim> {
-        self.point_claims(point).unwrap_or_default()
+        decided(|| self.point_claims(point))
+            .flatten()
+            .unwrap_or_default()
     }
 
     fn point_claims(&self, point: &dyn Source) -> Option<Vec<Claim>> {
@@ -247,7 +231,7 @@ impl Scene {
                     point.entry("x", &[1])?,
                     Enclosure::ZERO,
                 );
-                claims.add_light(self, &self.light_enclosed(x)?);
+                claims.add_light(&self.light_enclosed(x)?, |e| self.radiance(e));
             }
         }
         Some(claims.0)
@@ -255,7 +239,9 @@ impl Scene {
 
     /// Every value of the view of a table; empty if it cannot be read or the scene has none.
     pub fn view_enclosed(&self, view: &dyn Source) -> Vec<Claim> {
-        self.view_claims(view).unwrap_or_default()
+        decided(|| self.view_claims(view))
+            .flatten()
+            .unwrap_or_default()
     }
 
     fn view_claims(&self, view: &dyn Source) -> Option<Vec<Claim>> {
@@ -315,17 +301,6 @@ impl Scene {
     }
 }
 
-impl Light {
-    /// The sum of the listed classes.
-    pub fn caustic(&self) -> Certified {
-        let mut sum = Certified::NONE;
-        for (_, bundle) in &self.classes {
-            sum.join(bundle.total);
-        }
-        sum
-    }
-}
-
 /// An interval in [`PIECES`] parts.
 fn pieces(whole: Enclosure) -> Vec<Enclosure> {
     let cut = |i: u32| match i {
@@ -373,54 +348,4 @@ fn bounces(orders: u32, class: impl Fn(u32) -> Bundle) -> Vec<(String, Bundle)> 
     (1..=orders)
         .map(|k| (format!("L{}DE", "S".repeat(k as usize)), class(k)))
         .collect()
-}
-
-struct Claims(Vec<Claim>);
-
-impl Claims {
-    fn add(&mut self, key: &str, certified: Certified) {
-        self.0.push(Claim {
-            key: key.to_owned(),
-            certified,
-        });
-    }
-
-    fn add_light(&mut self, scene: &Scene, light: &Light) {
-        let caustic = light.caustic();
-        self.add("E_caustic", caustic);
-        self.add("L_caustic", scene.radiance(caustic));
-        if let Some(direct) = light.direct {
-            let mut total = direct;
-            total.join(caustic);
-            self.add("E_direct", direct);
-            self.add("L_total", scene.radiance(total));
-        }
-        for (key, value) in &light.further {
-            self.add(key, *value);
-        }
-        for (class, bundle) in &light.classes {
-            self.add(&format!("paths.{class}.E"), bundle.total);
-            self.add_rays(&format!("paths.{class}.roots"), "E", bundle);
-        }
-    }
-
-    /// The rays in descending order: the n-th largest value is between the n-th largest of all lower and of all upper ends.
-    /// Nothing where a ray may be missing.
-    fn add_rays(&mut self, place: &str, key: &str, bundle: &Bundle) {
-        if bundle.total.undecided {
-            return;
-        }
-        let sorted = |end: fn(Enclosure) -> f64| {
-            let mut ends: Vec<_> = bundle.rays.iter().map(|(e, _)| end(*e)).collect();
-            ends.sort_by(|a, b| b.total_cmp(a));
-            ends
-        };
-        let ends = sorted(Enclosure::low)
-            .into_iter()
-            .zip(sorted(Enclosure::high));
-        for (i, (low, high)) in ends.enumerate() {
-            let ray = Certified::of(Enclosure::new(low, high));
-            self.add(&format!("{place}.{i}.{key}"), ray);
-        }
-    }
 }

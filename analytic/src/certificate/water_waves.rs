@@ -54,10 +54,11 @@ impl WaterWaves {
         let sound = (index - Enclosure::ONE).is_positive()
             && (depth - height).is_positive()
             && (Enclosure::ONE - slope * tau).is_positive();
+        let irradiance = p.number("E0")?;
         sound.then(|| WaterWaves {
             index,
             depth,
-            irradiance: p.number("E0").unwrap_or(Enclosure::ONE),
+            irradiance,
             height,
             reach: (depth + height) * tau,
             waves,

@@ -4,29 +4,13 @@
 //! error-free transformations (D. E. Knuth, The Art of Computer Programming 2, §4.2.2; T. J. Dekker, Numerische
 //! Mathematik 18, 1971): only a result that is on the wrong side moves by one unit in the last place.
 
+use crate::double_double::{two_product, two_sum};
+
 /// Products within these moduli are split without over- or underflow.
 const RANGE: core::ops::Range<f64> = 1e-140..1e140;
 
 fn in_range(value: f64) -> bool {
     RANGE.contains(&value.abs())
-}
-
-/// `a + b - sum`, exactly; NaN on overflow.
-fn sum_error(a: f64, b: f64, sum: f64) -> f64 {
-    let v = sum - a;
-    (a - (sum - v)) + (b - v)
-}
-
-fn split(a: f64) -> (f64, f64) {
-    let t = 134_217_729.0 * a;
-    let high = t - (t - a);
-    (high, a - high)
-}
-
-/// `a * b - product`, exactly, if all three are in range.
-fn product_error(a: f64, b: f64, product: f64) -> f64 {
-    let ((ah, al), (bh, bl)) = (split(a), split(b));
-    ((ah * bh - product) + ah * bl + al * bh) + al * bl
 }
 
 /// `value`, moved down if the exact result is `error` (or unknown, a NaN) away.
@@ -51,7 +35,8 @@ pub(super) fn add_down(a: f64, b: f64) -> f64 {
     if sum.is_nan() {
         return f64::NEG_INFINITY;
     }
-    down(sum, sum_error(a, b, sum))
+    // NaN on overflow.
+    down(sum, two_sum(a, b).low)
 }
 
 pub(super) fn add_up(a: f64, b: f64) -> f64 {
@@ -66,7 +51,7 @@ pub(super) fn mul_down(a: f64, b: f64) -> f64 {
     }
     let product = a * b;
     let error = if in_range(a) && in_range(b) && in_range(product) {
-        product_error(a, b, product)
+        two_product(a, b).low
     } else {
         f64::NAN
     };
@@ -89,7 +74,7 @@ pub(super) fn div_down(a: f64, b: f64) -> f64 {
     let error = if in_range(a) && in_range(b) && in_range(quotient) {
         // The remainder a - q b is a number of the format; its sign is that of the error.
         let product = quotient * b;
-        (a - product) - product_error(quotient, b, product)
+        (a - product) - two_product(quotient, b).low
     } else {
         f64::NAN
     };
@@ -105,7 +90,7 @@ fn sqrt_error(a: f64, root: f64) -> f64 {
         0.0
     } else if in_range(a) {
         let square = root * root;
-        (a - square) - product_error(root, root, square)
+        (a - square) - two_product(root, root).low
     } else {
         f64::NAN
     }

@@ -47,7 +47,7 @@ impl AxialLight {
         );
         let outside = hypot(x, y) - self.lit;
         // Rounding decides on the edge of the disc.
-        let marginal = outside.abs() <= rounding_error(self.lit, 4.0);
+        let marginal = self.lit < f64::INFINITY && outside.abs() <= rounding_error(self.lit, 4.0);
         let lost = e.value;
         if outside > 0.0 {
             e = crate::kinds::Estimate::NONE;

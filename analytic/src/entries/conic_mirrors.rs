@@ -60,7 +60,7 @@ pub(super) fn form(scene: &ConicMirrorsScene) -> impl Form + use<> {
             })
         },
         direct: AxialLight::new(
-            conic.axis,
+            conic.center,
             conic.light_z(),
             intensity,
             (conic.rim_radius(), conic.rim_z),
@@ -97,7 +97,7 @@ impl Mirror {
 
 impl Form for Mirror {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
-        let (rx, ry) = (x - self.conic.axis[0], y - self.conic.axis[1]);
+        let (rx, ry) = (x - self.conic.center[0], y - self.conic.center[1]);
         let singularity = match &self.shape {
             Shape::Ellipsoid(m) => m.singularity(rx, ry),
             Shape::Hyperboloid(_) => None,
@@ -131,11 +131,11 @@ impl Form for Mirror {
                     ..mirror
                 },
                 drop: conic.image_z,
-                axis: conic.axis,
+                axis: conic.center,
                 slope,
             }),
             Shape::Hyperboloid(mirror) => {
-                let ([ax, ay], lit) = (conic.axis, slope * conic.image_z);
+                let ([ax, ay], lit) = (conic.center, slope * conic.image_z);
                 Arc::new(FloorLight::new(&self.floor, move |x, y| {
                     let (x, y) = (x - ax, y - ay);
                     let mut margins = [1.0; MARGINS];

@@ -15,12 +15,15 @@ mod flat_interface;
 mod furnace;
 mod glass_pillar;
 mod glass_slab;
+mod glass_sphere;
 mod paraboloid;
 mod pillar;
 mod planar_chains;
 mod planar_mirror;
+mod stigmatic_refractors;
 mod strength;
 mod underwater;
+mod water_waves;
 
 pub use furnace::WallTruth;
 
@@ -119,6 +122,9 @@ pub fn form(kind: &Kind) -> Arc<dyn Form> {
         Kind::ConicMirrors(s) => Arc::new(conic_mirrors::form(s)),
         Kind::Furnace(s) => Arc::new(furnace::form(s)),
         Kind::Underwater(s) => Arc::new(underwater::form(s)),
+        Kind::GlassSphere(s) => Arc::new(glass_sphere::form(s)),
+        Kind::WaterWaves(s) => Arc::new(water_waves::form(s)),
+        Kind::StigmaticRefractors(s) => Arc::new(stigmatic_refractors::form(s)),
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) fn form(scene: &ParaboloidScene) -> impl Form + use<> {
             inner_radius: dish.inner_radius,
             outer_radius: dish.outer_radius,
         },
-        direct: AxialLight::new(dish.axis, dish.focus_z(), intensity, rim),
+        direct: AxialLight::new(dish.center, dish.focus_z(), intensity, rim),
         floor: scene.floor.clone(),
     }
 }

@@ -243,6 +243,13 @@ impl<S: Scalar> StigmaticRefractor<S> {
         sum
     }
 
+    /// Intensity of the light towards the focus from the angle with this tangent from the axis [W/sr].
+    pub fn intensity(&self, tangent: S) -> S {
+        let slant = tangent.hypot(S::ONE);
+        let ray = self.front.ray(self.index, S::ONE / slant, tangent / slant);
+        ray.intensity
+    }
+
     /// The focus.
     pub fn singularity(&self, x: S, y: S) -> Option<Singularity<S>> {
         Some(Singularity {

@@ -1,9 +1,52 @@
-//! Where a camera looks.
+//! What a camera does not see: convex bodies beside the frame.
+//!
+//! The rays of the frame fill a convex cone, so a convex body that no ray meets can be told from it by a plane through
+//! the pinhole. Only the four planes by the frame's borders are tried: what they do not tell apart is refused. That is
+//! more than needed only for bodies across a corner of the frame.
 
 use crate::camera::Film;
 use crate::scene::Camera;
 use crate::scene::ranges::{Checked, invalid};
 use crate::vector::Vec3;
+
+/// The frame of a camera that has passed its own checks.
+pub(super) struct Frame<'a> {
+    camera: &'a Camera,
+    /// Pinhole, and the inner normals of the planes by the frame's borders.
+    eye: Vec3<f64>,
+    inward: [Vec3<f64>; 4],
+}
+
+impl<'a> Frame<'a> {
+    pub fn new(camera: &'a Camera) -> Self {
+        let film = Film::new(camera);
+        let (w, h) = (f64::from(film.width), f64::from(film.height));
+        let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(|(u, v)| film.direction(u, v));
+        let inward = core::array::from_fn(|k| {
+            let n = corners[k].cross(corners[(k + 1) % 4]).normalized();
+            // The axis is inside.
+            if n.dot(film.forward) < 0.0 { -n } else { n }
+        });
+        Frame {
+            camera,
+            eye: film.position,
+            inward,
+        }
+    }
+
+    /// Checks that no ray of the frame meets a convex body, of which `reach(n)` is the largest n·p over its points.
+    pub fn check_beside(&self, body: &str, reach: impl Fn([f64; 3]) -> f64) -> Checked {
+        let beside = |n: &Vec3<f64>| reach([n.x, n.y, n.z]) < n.dot(self.eye);
+        if self.inward.iter().any(beside) {
+            return Ok(());
+        }
+        Err(invalid(
+            "camera.look_at",
+            format!("{:?}", self.camera.look_at),
+            &format!("a frame beside {body}: wholly on the outer side of one of its borders"),
+        ))
+    }
+}
 
 impl Camera {
     /// Whether every ray of the frame goes down, from a pinhole below `ceiling`: then it sees nothing above the floor that
@@ -13,7 +56,7 @@ impl Camera {
             return Err(invalid(
                 "camera.position",
                 format!("{:?}", self.position),
-                &format!("a camera lower than the mirror: z less than {ceiling}"),
+                &format!("a camera lower than any optical surface: z less than {ceiling}"),
             ));
         }
         let film = Film::new(self);
@@ -28,33 +71,7 @@ impl Camera {
         Err(invalid(
             "camera.look_at",
             format!("{:?}", self.look_at),
-            "a frame below the horizon, in which there is no mirror",
-        ))
-    }
-    /// Whether a ball is outside the pyramid of the frame's rays, by one of its four sides. Then it neither is in the frame
-    /// nor hides what is. (Near an edge of the pyramid the check is stricter than need be.)
-    pub(super) fn check_without_ball(&self, key: &str, center: &[f64; 3], radius: f64) -> Checked {
-        let film = Film::new(self);
-        let (w, h) = (f64::from(self.width), f64::from(self.height));
-        let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(|(u, v)| film.direction(u, v));
-        let towards = Vec3::from_f64(*center) - film.position;
-        let outside = (0..4).any(|k| {
-            let normal = corners[k].cross(corners[(k + 1) % 4]).normalized();
-            // The middle of the frame is on the inner side.
-            let inwards = if normal.dot(film.forward) > 0.0 {
-                1.0
-            } else {
-                -1.0
-            };
-            -inwards * normal.dot(towards) > radius
-        });
-        if outside {
-            return Ok(());
-        }
-        Err(invalid(
-            key,
-            format!("{:?}", self.look_at),
-            "a frame that does not show the ball",
+            "a frame below the horizon, in which there is no optical surface",
         ))
     }
 }

@@ -89,6 +89,12 @@ pub enum Kind {
     Furnace(FurnaceScene),
     /// A flat water surface over the floor, light above it and camera below it.
     Underwater(UnderwaterScene),
+    /// A glass ball over the floor, in light that comes straight down.
+    GlassSphere(GlassSphereScene),
+    /// Rippled water over the floor, in light that comes straight down, camera below the water.
+    WaterWaves(WaterWavesScene),
+    /// A lens with its focus near the floor, glass from the lens to the floor.
+    StigmaticRefractors(StigmaticRefractorsScene),
 }
 
 impl Kind {
@@ -110,6 +116,9 @@ impl Kind {
             Kind::ConicMirrors(s) => s,
             Kind::Furnace(s) => s,
             Kind::Underwater(s) => s,
+            Kind::GlassSphere(s) => s,
+            Kind::WaterWaves(s) => s,
+            Kind::StigmaticRefractors(s) => s,
         }
     }
 

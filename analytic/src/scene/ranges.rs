@@ -2,7 +2,6 @@
 
 use libm::{hypot, sqrt};
 
-use crate::camera::Film;
 use crate::scene::{
     Camera, DirectionalLight, Entry, Floor, InvalidParameter, PointLight, RectangleMirror,
     VerticalLight, Water,
@@ -201,22 +200,6 @@ impl Water {
 }
 
 impl Camera {
-    /// Every ray of the camera goes down: what is above it is not in the frame.
-    pub(super) fn check_looks_down(&self) -> Checked {
-        let film = Film::new(self);
-        let (w, h) = (f64::from(self.width), f64::from(self.height));
-        let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)];
-        // Directions are linear on the film: the corners stand for all.
-        if corners.iter().all(|&(u, v)| film.direction(u, v).z < 0.0) {
-            return Ok(());
-        }
-        Err(invalid(
-            "camera.look_at",
-            format!("{:?}", self.look_at),
-            "a frame wholly below the horizon: nothing above the camera may be seen",
-        ))
-    }
-
     pub(super) fn validate(&self) -> Checked {
         coordinates("camera.position", &self.position)?;
         coordinates("camera.look_at", &self.look_at)?;

@@ -25,6 +25,7 @@
 //!
 //! **Accuracy**: a few units of rounding times the conditioning, which grows like 1/distance to the fold.
 
+pub mod bundle;
 pub mod fold;
 
 use crate::gradient::Gradient;

@@ -19,6 +19,7 @@
 mod bounds;
 pub mod eye;
 pub mod fold;
+pub mod ripples;
 
 use crate::gradient::Gradient;
 use crate::kinds::Estimate;

@@ -28,7 +28,7 @@ pub struct ConicMirrorsScene {
 pub struct Conic {
     /// Where the axis meets the floor, (x, y) [m].
     #[serde(default)]
-    pub axis: [f64; 2],
+    pub center: [f64; 2],
     /// Distance a between centre and vertex [m].
     pub semi_axis: f64,
     /// Eccentricity e ≠ 1.
@@ -80,7 +80,7 @@ impl Conic {
     }
 
     fn validate(&self) -> Checked {
-        coordinates("conic.axis", &self.axis)?;
+        coordinates("conic.center", &self.center)?;
         positive("conic.semi_axis", self.semi_axis)?;
         let e = self.eccentricity;
         if !((0.0..=0.999).contains(&e) || (1.001..=1000.0).contains(&e)) {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::class::PathClass;
+use crate::scene::frame::Frame;
 use crate::scene::ranges::{Checked, above, coordinates, invalid, positive};
 use crate::scene::{Camera, Closure, Family, Floor, PointLight};
 
@@ -71,6 +72,8 @@ impl Family for ConvexSphereScene {
         // A light above the ball's top casts an elliptical shadow; the other nappe of its cone goes up.
         self.light
             .validate(self.ball.center[2] + self.ball.radius)?;
-        camera.check_without_ball("camera.look_at", &self.ball.center, self.ball.radius)
+        let [x, y, z] = self.ball.center;
+        let reach = |n: [f64; 3]| n[0] * x + n[1] * y + n[2] * z + self.ball.radius;
+        Frame::new(camera).check_beside("the ball", reach)
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::class::PathClass;
-use crate::scene::ranges::{Checked, LARGEST, above, invalid, positive};
+use crate::scene::ranges::{Checked, LARGEST, above, positive};
 use crate::scene::{Camera, Closure, Family, Floor, PointLight};
 
 /// A parallel glass slab between a point light and the floor, camera below it.
@@ -41,15 +41,7 @@ impl Family for GlassSlabScene {
     fn validate(&self, camera: &Camera) -> Checked {
         self.slab.validate()?;
         self.light.validate(self.slab.top)?;
-        let below = self.slab.bottom;
-        if camera.position[2] < below {
-            return Ok(());
-        }
-        Err(invalid(
-            "camera.position",
-            format!("{:?}", camera.position),
-            &format!("a camera below the slab: z less than {below}"),
-        ))
+        camera.check_under(self.slab.bottom)
     }
 }
 

@@ -26,7 +26,7 @@ pub struct ParaboloidScene {
 pub struct Dish {
     /// Where the axis meets the floor, (x, y) [m].
     #[serde(default)]
-    pub axis: [f64; 2],
+    pub center: [f64; 2],
     /// Height of the vertex above the floor [m].
     pub vertex_z: f64,
     /// Focal length f [m]: the focus is this far below the vertex.
@@ -51,7 +51,7 @@ impl Dish {
     }
 
     fn validate(&self) -> Checked {
-        coordinates("dish.axis", &self.axis)?;
+        coordinates("dish.center", &self.center)?;
         positive("dish.vertex_z", self.vertex_z)?;
         positive("dish.focal_length", self.focal_length)?;
         within("dish.inner_radius", self.inner_radius, 0.0, LARGEST)?;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::class::PathClass;
-use crate::scene::ranges::{Checked, invalid};
+use crate::scene::ranges::Checked;
 use crate::scene::{Camera, Closure, Family, Floor, PointLight, Water};
 
 /// A flat water surface over the floor, light above it and camera below it.
@@ -41,13 +41,6 @@ impl Family for UnderwaterScene {
     fn validate(&self, camera: &Camera) -> Checked {
         self.water.validate()?;
         self.light.validate(self.water.surface_z)?;
-        if !(camera.position[2] < self.water.surface_z) {
-            return Err(invalid(
-                "camera.position",
-                format!("{:?}", camera.position),
-                &format!("a camera under water: z less than {}", self.water.surface_z),
-            ));
-        }
-        camera.check_looks_down()
+        camera.check_under(self.water.surface_z)
     }
 }

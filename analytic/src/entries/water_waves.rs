@@ -1,0 +1,60 @@
+//! Rippled water, seen from below its surface.
+
+use std::sync::Arc;
+
+use super::{Form, PointTruth};
+use crate::class::PathClass;
+use crate::flux::{Bundle, MARGINS, Ray};
+use crate::kinds::water_waves::ripples::Ripples;
+use crate::scene::{Floor, WaterWavesScene};
+
+#[derive(Clone, Debug)]
+struct Pool {
+    form: Ripples<f64>,
+    floor: Floor,
+}
+
+pub(super) fn form(scene: &WaterWavesScene) -> impl Form + use<> {
+    let form = match scene.ripples() {
+        Ok(form) => form,
+        Err(e) => panic!("the entry has not been validated: {e}"),
+    };
+    Pool {
+        form,
+        floor: scene.floor.clone(),
+    }
+}
+
+impl Form for Pool {
+    fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
+        vec![PointTruth {
+            class: PathClass::LSDE,
+            irradiance: self.form.caustic(x, y),
+            singularity: self.form.singularity([x, y]),
+        }]
+    }
+
+    fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {
+        Some(vec![vec![Arc::new(self.clone())]])
+    }
+}
+
+/// The parameters are where a ray enters the water: smooth through folds and cusps.
+impl Bundle for Pool {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        let reach = self.form.reach();
+        [0, 1].map(|k| {
+            let (center, half) = (self.floor.center[k], self.floor.half_width[k]);
+            [center - half - reach, center + half + reach]
+        })
+    }
+
+    fn ray(&self, u: [f64; 2]) -> Ray {
+        let ray = self.form.ray(u);
+        Ray {
+            floor: ray.floor,
+            flux: self.form.flux(&ray),
+            margins: [1.0; MARGINS],
+        }
+    }
+}
