@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use nephroid_analytic::scene::{
-    self, ArcWall, Ball, Camera, CircleLight, ClosedWall, Conic, ConicArc, DirectionalLight, Dish, Entry, Floor, FocalLight, GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge, PointLight, RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
+    self, ArcWall, Ball, Camera, CircleLight, ClosedWall, Conic, ConicArc, DirectionalLight, Dish,
+    Entry, Floor, FocalLight, GlassBall, GlassCylinder, Kind, LensFront, MirrorPillar, MirrorWedge,
+    PointLight, RectangleMirror, Ripple, Slab, SphereCap, SphereWall, VerticalLight, Water,
 };
 use serde::Deserialize;
 

@@ -2,7 +2,11 @@
 
 use glam::DVec3;
 use nephroid_analytic::scene::{
-    ArcWall, Camera, ClosedCupScene, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene, ConvexSphereScene, CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry, Family, FlatInterfaceScene, FocalLight, GlassPillarScene, GlassSlabScene, GlassSphereScene, Kind, ParaboloidScene, PillarScene, PlanarChainsScene, PlanarMirrorScene, PointLight, StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
+    ArcWall, Camera, ClosedCupScene, ConcaveSphereScene, ConicMirrorsScene, ConicWallScene,
+    ConvexSphereScene, CylinderCupScene, CylinderLampScene, DiffuseScene, DirectionalLight, Entry,
+    Family, FlatInterfaceScene, FocalLight, GlassPillarScene, GlassSlabScene, GlassSphereScene,
+    Kind, ParaboloidScene, PillarScene, PlanarChainsScene, PlanarMirrorScene, PointLight,
+    StigmaticRefractorsScene, UnderwaterScene, VerticalLight, WaterWavesScene,
 };
 
 use super::arc::Arc;
@@ -262,8 +266,6 @@ impl Build {
             intensity: self.overrides.light_strength.unwrap_or(light.intensity),
         };
         self.scene(light, wall, &s.floor)
-    }
-
     }
 
     fn closed_cup(&self, s: &ClosedCupScene) -> Scene<Directional, CupWall> {
