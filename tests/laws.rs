@@ -217,7 +217,6 @@ fn irradiance_has_the_symmetry_of_space() {
         "edge",
         "up",
         "wave_vector",
-        "axis",
     ];
     for (name, entry) in catalogue() {
         if HANDED.contains(&entry["kind"].as_str().unwrap()) {
