@@ -23,7 +23,7 @@ fn land<L: Light, S: Chains>(
     v: f64,
 ) -> Option<[f64; 3]> {
     let targets = scene.surface.targets(chain, &scene.floor.hull());
-    let (origin, direction) = scene.light.narrow(&targets).ray(u, v);
+    let (origin, direction) = scene.light.narrow(&targets, 10.0).ray(u, v);
     let leg = scene.surface.follow(chain, origin, direction);
     let t = -leg.origin.z / leg.direction.z;
     let at: DVec3 = leg.origin + leg.direction * t;
@@ -55,7 +55,7 @@ impl Visitor for OneRoot<'_> {
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output {
         let truth = FloorTruth::new(self.entry).unwrap();
         let targets = scene.surface.targets(self.chain, &scene.floor.hull());
-        let flux = scene.light.narrow(&targets).flux();
+        let flux = scene.light.narrow(&targets, 10.0).flux();
         let (mut compared, mut worst) = (0, 0.0_f64);
         for k in 0..self.grid * self.grid {
             let at = |n: u32| (f64::from(n) + 0.5) / f64::from(self.grid);
@@ -249,7 +249,7 @@ fn a_lens_with_its_focus_on_the_floor_is_reported_as_stigmatic() {
     let Kind::StigmaticRefractors(s) = &mut scene.kind else {
         panic!("the lens is a lens");
     };
-    s.lens.axis = [0.03, 0.02];
+    s.lens.center = [0.03, 0.02];
     let [near, focus] = [0.2, 0.0].map(|defocus| {
         let Kind::StigmaticRefractors(s) = &mut scene.kind else {
             panic!("the lens is a lens");

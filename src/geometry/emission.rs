@@ -164,6 +164,11 @@ impl Emitter for Beam {
 impl Directional {
     /// Uniform over the beam that covers the convex hull of `targets`.
     pub fn towards_hull(&self, targets: &[DVec3]) -> Beam {
+        self.beam(targets, f64::NEG_INFINITY)
+    }
+
+    /// The same, from a start that is higher than `highest` as well.
+    pub fn beam(&self, targets: &[DVec3], highest: f64) -> Beam {
         let mut low = DVec3::splat(f64::INFINITY);
         let mut high = DVec3::splat(f64::NEG_INFINITY);
         for &target in targets {
@@ -174,7 +179,7 @@ impl Directional {
         }
         let extent = [high.x - low.x, high.y - low.y];
         // Starts higher than every target: whatever a photon can meet is then before it.
-        let start = high.z + 1.0;
+        let start = high.z.max(highest) + 1.0;
         let corner = DVec3::new(low.x, low.y, 0.0) + self.travel * (start / self.travel.z);
         Beam {
             travel: self.travel,

@@ -35,7 +35,7 @@ impl Lens {
         let (square, half) = (across * across + along * along, focus * along);
         let length = (f64::sqrt(half * half + square * (1.0 - focus * focus)) - half) / square;
         Lens {
-            center: DVec3::new(lens.axis[0], lens.axis[1], lens.defocus + a / n),
+            center: DVec3::new(lens.center[0], lens.center[1], lens.defocus + a / n),
             axes: DVec3::new(b, b, a),
             index: n,
             screen_z: lens.defocus + length * cosine,

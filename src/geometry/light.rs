@@ -14,8 +14,9 @@ pub trait Light: Copy + Send + Sync + 'static {
     /// Photons over everything that can reach the convex hull of `targets`, and little else.
     fn aimed(&self, targets: &[DVec3]) -> Self::Emitter;
 
-    /// Photons over the smallest cone (or beam) about the convex hull of `targets`.
-    fn narrow(&self, targets: &[DVec3]) -> Self::Narrow;
+    /// Photons over the smallest cone (or beam) about the convex hull of `targets`; nothing that is to stand in their way is
+    /// higher than `highest` [m].
+    fn narrow(&self, targets: &[DVec3], highest: f64) -> Self::Narrow;
 
     /// Photons with the density of the tables of expectations: over the whole sphere from a point light; over a
     /// cross-section that covers the targets from a directional one.
@@ -46,7 +47,7 @@ impl Light for Point {
         self.towards_hull(targets)
     }
 
-    fn narrow(&self, targets: &[DVec3]) -> Cone {
+    fn narrow(&self, targets: &[DVec3], _: f64) -> Cone {
         self.cone(targets)
     }
 
@@ -82,8 +83,8 @@ impl Light for Directional {
         self.towards_hull(targets)
     }
 
-    fn narrow(&self, targets: &[DVec3]) -> Beam {
-        self.towards_hull(targets)
+    fn narrow(&self, targets: &[DVec3], highest: f64) -> Beam {
+        self.beam(targets, highest)
     }
 
     fn unaimed(&self, targets: &[DVec3]) -> Beam {

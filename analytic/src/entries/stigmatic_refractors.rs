@@ -31,7 +31,7 @@ pub(super) fn form(scene: &StigmaticRefractorsScene) -> impl Form + use<> {
             },
             defocus: lens.defocus,
         },
-        axis: lens.axis,
+        axis: lens.center,
         aperture: lens.aperture(),
     }
 }

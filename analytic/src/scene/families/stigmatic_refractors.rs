@@ -26,7 +26,7 @@ pub struct StigmaticRefractorsScene {
 pub struct LensFront {
     /// The vertical axis, (x, y) [m].
     #[serde(default)]
-    pub axis: [f64; 2],
+    pub center: [f64; 2],
     /// Height of the focus above the floor [m]; below it where negative. 0 is stigmatic: all light comes to one point of
     /// the floor.
     pub defocus: f64,
@@ -53,7 +53,7 @@ impl LensFront {
     }
 
     fn validate(&self) -> Checked {
-        coordinates("lens.axis", &self.axis)?;
+        coordinates("lens.center", &self.center)?;
         within("lens.defocus", self.defocus, -LARGEST, LARGEST)?;
         positive("lens.semi_axis", self.semi_axis)?;
         above("lens.index", self.index, 1.0, 10.0)?;
