@@ -275,7 +275,8 @@ impl Build {
             half_arc_degrees: 180.0,
             reflectance: s.wall.reflectance,
         };
+        let light = self.directional(&s.light);
         let wall = CupWall::new(&wall, self.reflectance(wall.reflectance), s.classes());
-        self.scene(self.directional(&s.light), wall, &s.floor)
+        self.scene(light, wall.in_beam(light.travel), &s.floor)
     }
 }

@@ -20,6 +20,8 @@ pub struct CupWall {
     half_arc: f64,
     reflectance: f64,
     classes: &'static [PathClass],
+    /// Direction of parallel light that comes in over the rim of a closed wall.
+    travel: Option<DVec3>,
 }
 
 impl CupWall {
@@ -31,7 +33,45 @@ impl CupWall {
             half_arc: wall.half_arc_degrees.to_radians(),
             reflectance,
             classes,
+            travel: None,
         }
+    }
+
+    /// The same wall, closed, in parallel light of this direction.
+    pub fn in_beam(self, travel: DVec3) -> Self {
+        CupWall {
+            half_arc: core::f64::consts::PI,
+            travel: Some(travel),
+            ..self
+        }
+    }
+
+    /// Corners of a rectangle of the opening through which all parallel light comes that is reflected k ≥ 1 times on its way
+    /// to points no farther than `reach` from the axis.
+    ///
+    /// A ray keeps its distance y from the axis, so |y| ≤ `reach`: half of every chord is C ≥ √(a² - `reach`²). It
+    /// comes in at -C ≤ x ≤ C along the beam, and goes C - x + (k - 1) 2C + τ, 0 ≤ τ ≤ 2C, down to the floor.
+    fn opening(&self, travel: DVec3, k: usize, reach: f64) -> Vec<DVec3> {
+        let a = self.radius;
+        let plan = DVec3::new(travel.x, travel.y, 0.0);
+        let speed = f64::sqrt(plan.dot(plan));
+        let (ahead, length) = (plan / speed, self.height * speed / -travel.z);
+        let y = if reach < a { reach } else { a };
+        let shortest = f64::sqrt((a - y) * (a + y));
+        let k = k as f64;
+        let first = (shortest * (2.0 * k - 1.0) - length).max(-a);
+        let last = (a * (2.0 * k + 1.0) - length).min(a);
+        let aside = DVec3::new(-ahead.y, ahead.x, 0.0);
+        let corner = |x: f64, y: f64| ahead * x + aside * y + DVec3::new(0.0, 0.0, self.height);
+        // Rounding at the border: a margin far above it.
+        let (y, margin) = (y + 1e-9 * a, 1e-9 * a);
+        let (first, last) = (first - margin, last.max(first) + margin);
+        vec![
+            corner(first, -y),
+            corner(first, y),
+            corner(last, -y),
+            corner(last, y),
+        ]
     }
 
     /// The number of reflections of a chain.
@@ -97,10 +137,15 @@ impl Chains for CupWall {
         self.crossings(origin, direction).into_iter().any(met)
     }
 
-    /// The floor, or the box about the wall.
+    /// The floor, or the box about the wall, or a part of its opening.
     fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
         if self.bounces(chain) == 0 {
             return floor.to_vec();
+        }
+        if let Some(travel) = self.travel {
+            let far = |c: &DVec3| f64::sqrt(c.x * c.x + c.y * c.y);
+            let reach = floor.iter().map(far).fold(0.0, f64::max);
+            return self.opening(travel, self.bounces(chain), reach);
         }
         let (s, c) = libm::sincos(self.half_arc.min(core::f64::consts::PI));
         let y_max = if c > 0.0 {
