@@ -64,7 +64,9 @@ impl<L: Light, S: Chains> LightChains<L, S> {
                 *hits += u.iter().zip(&v).filter(|&pair| lands(pair)).count() as u64;
             }
         }
-        let fewest = hits.iter().copied().min().unwrap_or(0).max(1);
+        // A chain that the pilot does not see at all says nothing about the others.
+        let seen = hits.iter().copied().filter(|&hits| hits > 0);
+        let fewest = seen.min().unwrap_or(1);
         let stride = |&hits: &u64| {
             let more = (hits / fewest).clamp(1, LONGEST_STRIDE);
             1 << more.ilog2()
