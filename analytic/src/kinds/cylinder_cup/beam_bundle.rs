@@ -33,7 +33,11 @@ impl Bundle for BeamRays {
     fn domain(&self) -> [[f64; 2]; 2] {
         // A chord passes the axis at a |sin φ|.
         let widest = libm::asin(self.extent);
-        [[-widest, widest], [0.0, 1.0]]
+        // η ≤ η/cos φ ≤ η/cos(widest) in the conditions of the rims.
+        let k = f64::from(self.bounces);
+        let first = (self.depth - k).clamp(0.0, 1.0);
+        let last = (self.depth / libm::cos(widest) - k + 1.0).clamp(first, 1.0);
+        [[-widest, widest], [first, last]]
     }
 
     fn ray(&self, [phi, t]: [f64; 2]) -> Ray {
