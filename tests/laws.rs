@@ -116,7 +116,11 @@ fn variations(
             let [low, high] = truth.range(axis);
             low + (high - low) * s
         };
-        (check.borrow_mut())(&varied, &truth, [at(0, s), at(1, t)]);
+        // Some entries light the middle of their floor only.
+        for part in [1.0, 0.5, 0.2] {
+            let inner = |s: f64| 0.5 + part * (s - 0.5);
+            (check.borrow_mut())(&varied, &truth, [at(0, inner(s)), at(1, inner(t))]);
+        }
         Ok(())
     });
     outcome.unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -162,7 +166,7 @@ fn irradiance_scales_with_the_scene() {
     for (name, entry) in catalogue() {
         let point_light = entry["light"].get("intensity").is_some();
         let mut compared = 0;
-        variations(&name, &entry, 24, |varied, truth, [x, y]| {
+        variations(&name, &entry, 12, |varied, truth, [x, y]| {
             for k in [3.7, 0.013] {
                 let scaled = change(varied, |table, key, _, v| match key {
                     "wave_vector" => v / k,
@@ -183,7 +187,7 @@ fn irradiance_scales_with_the_scene() {
 #[test]
 fn irradiance_is_proportional_to_the_light() {
     for (name, entry) in catalogue() {
-        variations(&name, &entry, 16, |varied, truth, [x, y]| {
+        variations(&name, &entry, 6, |varied, truth, [x, y]| {
             let twice = change(varied, |_, key, _, v| match key {
                 "intensity" | "irradiance" => 2.0 * v,
                 _ => v,
@@ -223,7 +227,7 @@ fn irradiance_has_the_symmetry_of_space() {
             continue;
         }
         let mut compared = 0;
-        variations(&name, &entry, 24, |varied, truth, [x, y]| {
+        variations(&name, &entry, 12, |varied, truth, [x, y]| {
             let mirrored = change(varied, |_, key, i, v| {
                 if POINTS.contains(&key) && i == 1 || key == "azimuth_degrees" {
                     -v
