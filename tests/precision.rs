@@ -197,7 +197,12 @@ const WALLS: &[Allowed] = &[
 ];
 
 /// Catalogue kinds that are other scenes of a table's kind.
-const SAME: &[(&str, &str)] = &[("furnace", "diffuse"), ("underwater", "flat-interface")];
+const SAME: &[(&str, &str)] = &[
+    ("closed-cup", "cylinder-cup"),
+    ("cylinder-lamp", "cylinder-cup"),
+    ("furnace", "diffuse"),
+    ("underwater", "flat-interface"),
+];
 
 fn pillar_of<S: Scalar>() -> Pillar<S> {
     let scene = entry::load("pillar").expect("the entry");
