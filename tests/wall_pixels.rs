@@ -24,18 +24,18 @@ fn seen(film: &Film, truth: &FloorTruth, u: f64, v: f64) -> Option<Vec<PointTrut
 }
 
 /// Whether a class is smooth over a pixel: as many rays arrive at all points of a fine grid, its border included, and its
-/// caustic is far.
+/// caustic is far: from 1.5 pixels on, the rule's error next to a square root is below 1e-9.
 fn smooth(grid: &[Vec<PointTruth>], class: usize, pixel: f64) -> bool {
     let roots = grid[0][class].irradiance.roots;
     grid.iter().all(|p| {
         let far = p[class]
             .singularity
-            .is_none_or(|s| s.distance > 5.0 * pixel);
+            .is_none_or(|s| s.distance > 1.5 * pixel);
         p[class].irradiance.roots == roots && far
     })
 }
 
-/// One pixel in 7 × 6 of each picture. A lost or doubled ray, a wrong area element or a wrong weight would show at 1e-6.
+/// One pixel in 5 × 4 of each picture. A lost or doubled ray, a wrong area element or a wrong weight would show at 1e-6.
 #[test]
 fn smooth_pixels_are_means_of_point_values() {
     for name in [
@@ -54,8 +54,8 @@ fn smooth_pixels_are_means_of_point_values() {
         let pixel = scene.camera.position[2] * film.du.length();
         let mut lit = vec![0; image.classes.len()];
         for (i, j) in (0..70)
-            .step_by(7)
-            .flat_map(|j| (0..70).step_by(6).map(move |i| (i, j)))
+            .step_by(5)
+            .flat_map(|j| (0..70).step_by(4).map(move |i| (i, j)))
         {
             let at = |s: f64, t: f64| seen(&film, &floor, i as f64 + s, j as f64 + t);
             let grid: Option<Vec<_>> = (0..49)
