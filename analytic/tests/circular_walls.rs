@@ -90,7 +90,7 @@ fn highest_second_meeting(light: [f64; 3]) -> f64 {
     for k in 0..720 {
         let phi = f64::from(k) * core::f64::consts::PI / 360.0 + 1e-3;
         for z in [0.2, 0.6, 1.0] {
-            let q = vec3(RADIUS * phi.cos(), RADIUS * phi.sin(), HEIGHT * z);
+            let q = vec3(RADIUS * libm::cos(phi), RADIUS * libm::sin(phi), HEIGHT * z);
             let again = leave(q, reflected(q, q - light));
             highest = highest.max(again.z);
         }
@@ -143,8 +143,8 @@ fn the_cardioid_has_its_cusp_opposite_the_lamp() {
     assert_eq!(cusp.kind, SingularityKind::Cusp);
     assert!((cusp.distance - 0.01).abs() < 1e-9, "{cusp:?}");
     for t in [0.3_f64, 0.6, 0.9] {
-        let x = RADIUS / 3.0 * (2.0 * t.cos() - (2.0 * t).cos());
-        let y = RADIUS / 3.0 * (2.0 * t.sin() - (2.0 * t).sin());
+        let x = RADIUS / 3.0 * (2.0 * libm::cos(t) - libm::cos(2.0 * t));
+        let y = RADIUS / 3.0 * (2.0 * libm::sin(t) - libm::sin(2.0 * t));
         let fold = at(x, y);
         assert!(
             fold.kind == SingularityKind::Fold && fold.distance < 1e-9,
@@ -163,7 +163,7 @@ fn the_sun_makes_a_cusp_for_every_number_of_bounces() {
         (3.6, 4, -0.125),
     ] {
         let slope: f64 = HEIGHT / (2.0 * RADIUS * depth);
-        let truth = FloorTruth::new(&sun(slope.atan().to_degrees(), 0.5)).unwrap();
+        let truth = FloorTruth::new(&sun(libm::atan(slope).to_degrees(), 0.5)).unwrap();
         let class = PathClass::new(k, 0);
         // On the side of the cusp where the caustic is not.
         let off = -0.004 * f64::copysign(1.0, x);
@@ -193,7 +193,7 @@ fn every_ray_on_the_floor_of_a_closed_cup_is_of_a_class() {
             if p.x * p.x + p.y * p.y >= RADIUS * RADIUS {
                 continue;
             }
-            let mut d = vec3(e.cos(), 0.0, -e.sin());
+            let mut d = vec3(libm::cos(e), 0.0, -libm::sin(e));
             let mut reflections = 0;
             let on_floor = loop {
                 let q = leave(p, d);
@@ -233,17 +233,17 @@ fn the_near_rim_throws_its_shadow_on_the_floor() {
     let scene = sun(elevation, 0.68);
     assert_eq!(scene.kind.classes()[0], PathClass::LDE);
     let truth = FloorTruth::new(&scene).unwrap();
-    let shift = HEIGHT / elevation.to_radians().tan();
+    let shift = HEIGHT / libm::tan(elevation.to_radians());
     let (mut lit, mut dark) = (0, 0);
     for n in 0..40 * 40 {
         let at = |k: i32| 0.68 * (f64::from(k) / 19.5 - 1.0);
         let (x, y) = (at(n % 40), at(n / 40));
         // The ray seen from the point passes over the near rim where it leaves the circle, if that is high enough.
         let e = elevation.to_radians();
-        let over = leave(vec3(x, y, 0.0), vec3(-e.cos(), 0.0, e.sin())).z > HEIGHT;
-        assert_eq!(over, (x - shift).hypot(y) < RADIUS);
+        let over = leave(vec3(x, y, 0.0), vec3(-libm::cos(e), 0.0, libm::sin(e))).z > HEIGHT;
+        assert_eq!(over, libm::hypot(x - shift, y) < RADIUS);
         let found = truth.at(x, y)[0].irradiance.value;
-        let expected = if over { 2.3 * e.sin() } else { 0.0 };
+        let expected = if over { 2.3 * libm::sin(e) } else { 0.0 };
         assert!((found - expected).abs() < 1e-14, "({x}, {y}) {found}");
         (lit, dark) = (lit + i32::from(over), dark + i32::from(!over));
     }
