@@ -1,4 +1,4 @@
-//! What a camera does not see: convex bodies beside the frame.
+//! What a camera does not see: convex bodies beside the frame, and what is above a frame that looks down.
 //!
 //! The rays of the frame fill a convex cone, so a convex body that no ray meets can be told from it by a plane through
 //! the pinhole. Only the four planes by the frame's borders are tried: what they do not tell apart is refused. That is

@@ -6,7 +6,6 @@
 //!
 //! Each kind has a file in [`families`]: its data, its path classes, its closure and its ranges.
 
-mod beside;
 mod camera;
 pub mod families;
 mod frame;

@@ -15,7 +15,7 @@ use libm::{asin, atan2, cos, hypot, sin};
 use serde::{Deserialize, Serialize};
 
 use crate::class::PathClass;
-use crate::scene::beside::Frame;
+use crate::scene::frame::Frame;
 use crate::scene::ranges::{Checked, LARGEST, above, coordinates, invalid, positive, within};
 use crate::scene::{Camera, Closure, Family, Floor, PointLight};
 

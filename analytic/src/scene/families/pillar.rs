@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::class::PathClass;
-use crate::scene::beside::Frame;
+use crate::scene::frame::Frame;
 use crate::scene::ranges::{Checked, above, coordinates, invalid, positive};
 use crate::scene::{Camera, Closure, Family, Floor, PointLight};
 
