@@ -34,7 +34,10 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         None => None,
         Some(scene) => match kinds.iter().find(|k| *k == scene) {
             Some(kind) => Some((*kind).to_owned()),
-            None => Some(entry::load(scene)?.kind.name().to_owned()),
+            None => {
+                let kind = entry::load(scene)?.kind.name();
+                Some(sweeps::swept_as(kind).to_owned())
+            }
         },
     };
     let rows = study(kind.as_deref());
