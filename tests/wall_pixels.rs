@@ -1,19 +1,11 @@
 //! Pixels of the entries with vertical walls, by conservation of flux along rays, against the mean of the irradiance at
 //! points, which finds the rays by roots: no code in common but the camera.
 
+mod gauss;
+
 use nephroid::{entry, truth};
 use nephroid_analytic::camera::Film;
 use nephroid_analytic::entries::{FloorTruth, PointTruth};
-
-/// Nodes and weights of Gauss's rule with 6 points on [0, 1] (Abramowitz & Stegun, table 25.4).
-const RULE: [(f64, f64); 6] = [
-    (0.033_765_242_898_423_98, 0.085_662_246_189_585_18),
-    (0.169_395_306_766_867_75, 0.180_380_786_524_069_3),
-    (0.380_690_406_958_401_56, 0.233_956_967_286_345_53),
-    (0.619_309_593_041_598_4, 0.233_956_967_286_345_53),
-    (0.830_604_693_233_132_3, 0.180_380_786_524_069_3),
-    (0.966_234_757_101_576, 0.085_662_246_189_585_18),
-];
 
 /// The light at the floor point seen at a film point; nothing beside the floor.
 fn seen(film: &Film, truth: &FloorTruth, u: f64, v: f64) -> Option<Vec<PointTruth>> {
@@ -63,8 +55,8 @@ fn smooth_pixels_are_means_of_point_values() {
                 .collect();
             let Some(grid) = grid else { continue };
             let mut mean = vec![0.0; image.classes.len()];
-            for (s, p) in RULE {
-                for (t, q) in RULE {
+            for &(s, p) in gauss::rule(6) {
+                for &(t, q) in gauss::rule(6) {
                     for (mean, point) in mean.iter_mut().zip(at(s, t).unwrap()) {
                         *mean += p * q * point.irradiance.value;
                     }
