@@ -202,12 +202,16 @@ fn step<S: Scalar>(sweep: &Sweep, t: f64) -> Outcome {
     if middle == 0.0 && value == 0.0 {
         return Outcome::Outside;
     }
+    let unit = S::EPSILON.to_f64();
+    let conditioning = conditioning::<S>(sweep, &inputs, middle);
+    // At the edge of a shadow that light reaches continuously, darkness is as good as a value without a digit.
+    if value == 0.0 && conditioning * unit >= 1.0 {
+        return Outcome::Singular;
+    }
     Outcome::Compared {
         // Zero error has no logarithm: half a unit of rounding is the least that is told.
-        error: ((value - middle) / middle)
-            .abs()
-            .max(0.5 * S::EPSILON.to_f64()),
-        conditioning: conditioning::<S>(sweep, &inputs, middle),
+        error: ((value - middle) / middle).abs().max(0.5 * unit),
+        conditioning,
         bounded: value >= truth.low - bound && value <= truth.high + bound,
     }
 }

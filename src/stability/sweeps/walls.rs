@@ -34,7 +34,7 @@ pub(super) fn sweeps() -> Vec<Sweep> {
             "conic-wall",
             ("lamp at the focus", "distance to the focus [m]"),
             near(),
-            |t| conic([0.6 * t, 0.8 * t], [0.5, 0.25]),
+            |t| conic([0.6 * t, 0.8 * t], [0.25, -0.125]),
         ),
         caustic(
             "conic-wall",
