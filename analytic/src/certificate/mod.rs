@@ -31,6 +31,7 @@ pub mod scene;
 pub mod source;
 pub mod sphere_mirror;
 pub mod stigmatic_refractors;
+pub mod vertical_walls;
 pub mod water_waves;
 
 use crate::enclosure::Enclosure;
