@@ -123,9 +123,11 @@ impl Scene {
             further: vec![],
         };
         Some(match &self.kind {
-            Kind::Floor(_) | Kind::Sphere(_) | Kind::Furnace(..) | Kind::Flatland(_) => {
-                return None;
-            }
+            Kind::Sphere(_) | Kind::Furnace(..) | Kind::Flatland(_) => return None,
+            Kind::Floor(f) => Light {
+                direct: Some(f.direct_enclosed(floor)),
+                ..Light::default()
+            },
             Kind::CylinderCup(cup) => Light {
                 direct: Some(cup.direct_enclosed(floor)),
                 classes: bounces(cup.orders(), |k| cup.caustic_enclosed(floor, k)),
