@@ -27,7 +27,13 @@ impl CylinderCup {
         let jet = Jet::constant;
         let p = lamp.at;
         if lamp.on_wall {
-            let start = jet(p.y.atan2(p.x));
+            // Away from the cut of the arc tangent.
+            let start = if p.x.is_negative() {
+                Enclosure::PI + (-p.y).atan2(-p.x)
+            } else {
+                p.y.atan2(p.x)
+            };
+            let start = jet(start);
             return (start - at - at, at + Jet::PI * Jet::HALF);
         }
         let (c, s) = (at.cos(), at.sin());
