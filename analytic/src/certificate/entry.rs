@@ -4,58 +4,16 @@
 //! place of a focus) is enclosed. The scene is then that of a reference table: [`Values`] stands for its parameters. What
 //! the tables do not have is decided here: rims that clip a mirror's light and shade direct light, a sphere's shadow.
 
-use std::collections::BTreeMap;
-
 use crate::certificate::radiometry::{Facing, Point, plan_squared, point_light_enclosed};
 use crate::certificate::ripples::Ripples;
 use crate::certificate::scene::Scene;
-use crate::certificate::source::Source;
+use crate::certificate::source::{Source, Values};
 use crate::certificate::{Certified, Lit};
 use crate::class::PathClass;
 use crate::enclosure::{Enclosure, decided};
 use crate::scalar::Scalar;
 use crate::scene::{Entry, Kind};
 use crate::vector::vec3;
-
-/// Parameters of a reference table that are enclosed rather than written.
-#[derive(Clone, Debug, Default)]
-struct Values {
-    numbers: BTreeMap<(String, usize), Enclosure>,
-    words: BTreeMap<String, String>,
-}
-
-impl Values {
-    fn set(&mut self, key: &str, values: &[Enclosure]) -> &mut Self {
-        for (i, v) in values.iter().enumerate() {
-            self.numbers.insert((key.to_owned(), i), *v);
-        }
-        self
-    }
-
-    fn word(&mut self, key: &str, word: impl ToString) -> &mut Self {
-        self.words.insert(key.to_owned(), word.to_string());
-        self
-    }
-}
-
-impl Source for Values {
-    fn text(&self, key: &str, _: &[usize]) -> Option<String> {
-        self.words.get(key).cloned()
-    }
-
-    fn number(&self, key: &str) -> Option<Enclosure> {
-        self.entry(key, &[0])
-    }
-
-    fn entry(&self, key: &str, indices: &[usize]) -> Option<Enclosure> {
-        let index = indices.first().copied().unwrap_or(0);
-        self.numbers.get(&(key.to_owned(), index)).copied()
-    }
-
-    fn has(&self, key: &str) -> bool {
-        self.words.contains_key(key) || self.number(key).is_some()
-    }
-}
 
 /// Direct light of a scene whose table defines another one, or none.
 #[derive(Clone, Copy, Debug)]
@@ -186,7 +144,6 @@ impl CertifiedEntry {
                 let radius = plan_squared(x, y).sqrt();
                 v.set("light_polar", &[radius, y.atan2(x), z])
                     .set("R", &[n("wedge.reflectance")?])
-                    .set("m", &[one])
                     .word("m", scene.wedge.divisor);
                 "planar-chains"
             }
