@@ -104,7 +104,7 @@ fn compare(form: &CylinderCup<f64>, on_wall: bool, spread: &mut Spread, tally: &
             assert_eq!(certified.roots, value.roots, "{place}");
             if value.value > 0.0 && k > 0 {
                 tally.lit += 1;
-                tally.outside_lit += u32::from(x.hypot(y) > form.wall.radius);
+                tally.outside_lit += u32::from(libm::hypot(x, y) > form.wall.radius);
                 if value.conditioning() < 100.0 {
                     tally.widest = tally.widest.max(certified.value.relative_width());
                 }

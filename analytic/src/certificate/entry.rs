@@ -35,7 +35,7 @@ enum Direct {
 
 #[derive(Clone, Debug)]
 enum Light {
-    Table(Scene),
+    Table(Box<Scene>),
     Ripples(Ripples),
 }
 
@@ -266,7 +266,7 @@ impl CertifiedEntry {
         } else {
             let numbers = entry.kind.classes().iter().map(|c| c.light.len() as u32);
             let listed = numbers.filter(|m| *m > 0).collect();
-            Light::Table(Scene::read(name, &values)?.listing(listed))
+            Light::Table(Box::new(Scene::read(name, &values)?.listing(listed)))
         };
         Some(CertifiedEntry {
             light,
