@@ -5,9 +5,12 @@ mod reference_table;
 
 use nephroid_analytic::double_double::DoubleDouble;
 use nephroid_analytic::kinds::conic_mirrors::{Ellipsoid, Hyperboloid};
+use nephroid_analytic::kinds::conic_wall::ConicWall;
+use nephroid_analytic::kinds::glass_pillar::GlassPillar;
 use nephroid_analytic::kinds::glass_slab::GlassSlab;
 use nephroid_analytic::kinds::glass_sphere::GlassSphere;
 use nephroid_analytic::kinds::paraboloid::{Light as DishLight, Paraboloid};
+use nephroid_analytic::kinds::pillar::Pillar;
 use nephroid_analytic::kinds::planar_chains::{Corridor, Wedge};
 use nephroid_analytic::kinds::sphere_mirror::{Light, Side, SphereMirror};
 use nephroid_analytic::kinds::stigmatic_refractors::{Front, StigmaticRefractor};
@@ -219,6 +222,55 @@ fn waves(p: &Value) -> Form {
     Box::new(move |x| (None, water.caustic(x.x)))
 }
 
+fn pillar(p: &Value) -> Form {
+    let pillar = Pillar {
+        x: number(&p["center"][0]),
+        y: number(&p["center"][1]),
+        radius: number(&p["a"]),
+        height: number(&p["H"]),
+        reflectance: number(&p["R"]),
+        light: vector(&p["light"]),
+        intensity: number(&p["I"]),
+    };
+    Box::new(move |x| (Some(pillar.direct(x.x, x.y)), pillar.caustic(x.x, x.y)))
+}
+
+fn conic_wall(p: &Value) -> Form {
+    let axis = (number(&p["axis"][0]), number(&p["axis"][1]));
+    let length = axis.0.hypot(axis.1);
+    let wall = ConicWall {
+        x: number(&p["focus"][0]),
+        y: number(&p["focus"][1]),
+        axis: (axis.0 / length, axis.1 / length),
+        parameter: number(&p["p"]),
+        eccentricity: number(&p["e"]),
+        half_arc: (p["half_arc"] != "closed").then(|| number(&p["half_arc"])),
+        height: number(&p["H"]),
+        reflectance: number(&p["R"]),
+        light: vector(&p["light"]),
+        intensity: number(&p["I"]),
+    };
+    Box::new(move |x| (Some(wall.direct(x.x, x.y)), wall.caustic(x.x, x.y)))
+}
+
+fn glass_pillar(p: &Value) -> Form {
+    let pillar = GlassPillar {
+        x: number(&p["center"][0]),
+        y: number(&p["center"][1]),
+        radius: number(&p["a"]),
+        height: number(&p["H"]),
+        index: number(&p["n"]),
+        irradiance: number(&p["E0"]),
+        sin_elevation: number(&p["sin_elevation"]),
+        cos_elevation: number(&p["cos_elevation"]),
+    };
+    let most = p["max_interactions"].as_u64().expect("interactions") as u32;
+    Box::new(move |x| {
+        let caustic = sum((1..=most).map(|m| pillar.caustic(x.x, x.y, m)));
+        (Some(pillar.direct(x.x, x.y)), caustic)
+    })
+}
+
 /// Every point of a table: within the error bound, which is 2^-104 times the conditioning, and to 1e-30 where the
 /// conditioning is below 100.
 fn check(text: &str, form: fn(&Value) -> Form, points: u32) {
@@ -290,4 +342,7 @@ tables! {
     glass_sphere_table "glass-sphere" ball 26;
     cylinder_cup_table "cylinder-cup" cup 64;
     water_waves_table "water-waves" waves 26;
+    pillar_table "pillar" pillar 21;
+    conic_wall_table "conic-wall" conic_wall 56;
+    glass_pillar_table "glass-pillar" glass_pillar 31;
 }

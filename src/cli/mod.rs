@@ -5,6 +5,7 @@ mod explain;
 mod golden;
 mod list;
 mod probe;
+mod probe_certify;
 mod render;
 mod run;
 mod stability;
