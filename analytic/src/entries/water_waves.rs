@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{Form, PointTruth};
 use crate::class::PathClass;
 use crate::flux::{Bundle, MARGINS, Ray};
+use crate::kinds::singularity::Singularity;
 use crate::kinds::water_waves::ripples::Ripples;
 use crate::scene::{Floor, WaterWavesScene};
 
@@ -27,11 +28,11 @@ pub(super) fn form(scene: &WaterWavesScene) -> impl Form + use<> {
 
 impl Form for Pool {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
-        vec![PointTruth {
-            class: PathClass::LSDE,
-            irradiance: self.form.caustic(x, y),
-            singularity: self.form.singularity([x, y]),
-        }]
+        vec![PointTruth::new(PathClass::LSDE, self.form.caustic(x, y))]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        (index == 0).then(|| self.form.singularity([x, y]))?
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -4,8 +4,11 @@
 //! lands nearer than the best found: with M from the curvature of the map and |·| the Euclidean norm of a matrix,
 //!
 //! ```text
-//! |det J(u) - det J(c)| ≤ √2 M R (|J| + √2 M R),    |x(u) - x(c)| ≤ R (|J| + M R/2).
+//! |det J(u) - det J(c)| ≤ √2 M R (|J| + √2 M R),    |x(u) - x| ≥ |x(c) - x| - R (|Jᵀ e| + M R/2),
 //! ```
+//!
+//! e the unit vector along x(c) - x. Where the distance is stationary along a fold, Jᵀ e = 0, so that few squares next to it
+//! are left to be looked at.
 //!
 //! In the smallest squares Newton's method solves det J = 0 together with (x(u) - x)·J t = 0, t ⟂ ∇ det J the direction of
 //! the fold: the distance is stationary along it. J t = 0 there is a cusp.
@@ -112,12 +115,19 @@ impl<S: Scalar> Ripples<S> {
         if ray.determinant().abs() > spread * (norm + spread) {
             return None;
         }
-        let distance = (ray.floor[0] - x[0]).hypot(ray.floor[1] - x[1]);
-        let nearest = (distance - radius * (norm + S::HALF * bend)).max(S::ZERO);
+        let (dx, dy) = (ray.floor[0] - x[0], ray.floor[1] - x[1]);
+        let distance = dx.hypot(dy);
+        // |Jᵀ e| times the distance.
+        let moved = (a[0] * dx + b[0] * dy).hypot(a[1] * dx + b[1] * dy);
+        let nearest = if distance > S::ZERO {
+            distance - radius * (moved / distance + S::HALF * bend)
+        } else {
+            S::ZERO
+        };
         Some(Square {
             center,
             half,
-            nearest,
+            nearest: nearest.max(S::ZERO),
         })
     }
 
@@ -170,6 +180,9 @@ impl<S: Scalar> Ripples<S> {
                 break;
             }
             u = [u[0] - scale * p, u[1] - scale * q];
+            if (scale * p).hypot(scale * q) <= S::from_f64(64.0) * S::EPSILON * self.reach() {
+                break;
+            }
         }
         u
     }
