@@ -145,3 +145,18 @@ const _: () = {
         exp => libm::expf, exp_m1 => libm::expm1f, ln => libm::logf,
     );
 };
+
+#[cfg(test)]
+mod tests {
+    use super::Scalar;
+
+    #[test]
+    fn sine_and_cosine_together_have_the_bits_of_each() {
+        for k in -4000..=4000_i16 {
+            let x = f64::from(k) * 0.013_7;
+            assert_eq!(Scalar::sin_cos(x), (libm::sin(x), libm::cos(x)), "{x}");
+            let y = f32::from(k) * 0.013_7;
+            assert_eq!(Scalar::sin_cos(y), (libm::sinf(y), libm::cosf(y)), "{y}");
+        }
+    }
+}

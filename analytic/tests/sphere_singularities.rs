@@ -137,7 +137,7 @@ fn folds_on_a_grid(m: &SphereMirror<f64>, light: Vec3<f64>) -> Vec<Vec3<f64>> {
             found
         })
     };
-    let (rows, columns) = (1200, 1200);
+    let (rows, columns) = (800, 800);
     let limit = libm::acos(m.cap_cos_min);
     let mut points = vec![];
     for j in 0..columns {

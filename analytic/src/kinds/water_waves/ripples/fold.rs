@@ -49,6 +49,13 @@ struct Patch<S> {
 }
 
 impl<S: Scalar> Patch<S> {
+    /// How far from the landing point its rays land at most [m].
+    fn reach(&self) -> S {
+        let [a, b] = self.jacobian;
+        let square = a[0].squared() + a[1].squared() + b[0].squared() + b[1].squared();
+        S::TWO.sqrt() * self.half * (square.sqrt() + self.bend)
+    }
+
     /// The square with its bound.
     fn seen_from(&self, x: [S; 2]) -> Square<S> {
         let (dx, dy) = (self.landing[0] - x[0], self.landing[1] - x[1]);
@@ -101,7 +108,10 @@ pub struct FoldNetwork<S> {
     water: Ripples<S>,
     /// Range of x and of y [m].
     region: [[S; 2]; 2],
+    /// In ascending x of the landing point.
     patches: Vec<Patch<S>>,
+    /// The farthest that a patch's rays land from its landing point [m].
+    widest: S,
 }
 
 impl<S: Scalar> FoldNetwork<S> {
@@ -128,10 +138,16 @@ impl<S: Scalar> FoldNetwork<S> {
                 }
             }
         }
+        patches.sort_by(|a: &Patch<S>, b| {
+            let order = a.landing[0].partial_cmp(&b.landing[0]);
+            order.unwrap_or(core::cmp::Ordering::Equal)
+        });
+        let widest = patches.iter().fold(S::ZERO, |w, p| w.max(p.reach()));
         FoldNetwork {
             water: water.clone(),
             region,
             patches,
+            widest,
         }
     }
 
@@ -141,18 +157,29 @@ impl<S: Scalar> FoldNetwork<S> {
             .iter()
             .zip(&self.region)
             .all(|(&x, &[low, high])| low <= x && x <= high);
+        if !known {
+            return self.water.singularity(x);
+        }
+        // What is found within a distance is the nearest of all.
         let wide = self.water.narrow();
-        let found = known.then(|| {
-            let mut open: Vec<_> = self
-                .patches
-                .iter()
-                .map(|patch| patch.seen_from(x))
-                .filter(|square| square.nearest <= wide)
-                .collect();
-            promising_last(&mut open);
-            self.water.nearest_in(x, wide, open)
-        });
-        found.flatten().or_else(|| self.water.singularity(x))
+        [S::HALF * S::HALF * wide, wide]
+            .into_iter()
+            .find_map(|wide| self.nearest_within(x, wide))
+            .or_else(|| self.water.singularity(x))
+    }
+
+    fn nearest_within(&self, x: [S; 2], wide: S) -> Option<Singularity<S>> {
+        let from = x[0] - wide - self.widest;
+        let first = self.patches.partition_point(|p| p.landing[0] < from);
+        let mut open: Vec<_> = self.patches[first..]
+            .iter()
+            .take_while(|p| p.landing[0] <= x[0] + wide + self.widest)
+            .filter(|p| (p.landing[1] - x[1]).abs() <= wide + self.widest)
+            .map(|p| p.seen_from(x))
+            .filter(|square| square.nearest <= wide)
+            .collect();
+        promising_last(&mut open);
+        self.water.nearest_in(x, wide, open)
     }
 }
 
