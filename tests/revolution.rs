@@ -229,10 +229,10 @@ fn a_floor_in_the_focus_is_reported_as_degenerate() {
     let caustic = |x: f64, y: f64| closed.at(x, y)[1];
     let focus = caustic(0.1, 0.05);
     assert_eq!(focus.class, PathClass::LSDE);
-    assert_eq!(focus.state(), State::Degenerate);
+    assert_eq!(closed.state(0.1, 0.05, 1, &focus), State::Degenerate);
     let beside = caustic(0.1, 0.06);
     assert_eq!(beside.irradiance.value, 0.0);
-    let singularity = beside.singularity.unwrap();
+    let singularity = closed.singularity(0.1, 0.06, 1).unwrap();
     assert_eq!(singularity.kind, SingularityKind::PointFocus);
     assert!((singularity.distance - 0.01).abs() < 1e-15);
 }

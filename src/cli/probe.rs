@@ -105,10 +105,10 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                 radiance: truth.albedo() * irradiance / core::f64::consts::PI,
                 error_bound: moments.map_or(t.irradiance.error, |m| m.mean.error),
                 roots: t.irradiance.roots,
-                singularity: t.singularity,
+                singularity: truth.singularity(x, y, k),
                 strength: truth.strength(x, y, k).map(|s| s.value),
                 // A regularized estimator has an expectation everywhere.
-                state: moments.map_or(t.state(), |_| State::Regular),
+                state: moments.map_or_else(|| truth.state(x, y, k, &t), |_| State::Regular),
                 second_moment: moments.map(|m| m.second_moment.value),
                 proof: proofs.as_ref().and_then(|p| p.get(k).copied()),
             }

@@ -16,11 +16,15 @@ fn the_number_of_roots_changes_by_two_across_a_fold() {
                 let [low, high] = truth.range(axis);
                 low + (high - low) * s
             };
-            truth.at(point(0, s), point(1, t))
+            (point(0, s), point(1, t))
         };
         let lines = [0.137, 0.291, 0.418, 0.503, 0.632, 0.779];
         for (t, across) in lines.into_iter().flat_map(|t| [(t, false), (t, true)]) {
-            let along = |s: f64| if across { at(t, s) } else { at(s, t) };
+            let place = |s: f64| if across { at(t, s) } else { at(s, t) };
+            let along = |s: f64| {
+                let (x, y) = place(s);
+                truth.at(x, y)
+            };
             let steps = 96;
             for k in 0..steps {
                 let (a, b) = (
@@ -44,9 +48,12 @@ fn the_number_of_roots_changes_by_two_across_a_fold() {
                         }
                     }
                     let (p, q) = (along(low)[c], along(high)[c]);
-                    let near = [p, q]
+                    let near = [low, high]
                         .into_iter()
-                        .filter_map(|p| p.singularity)
+                        .filter_map(|s| {
+                            let (x, y) = place(s);
+                            truth.singularity(x, y, c)
+                        })
                         .any(|s| s.kind == SingularityKind::Fold && s.distance < 1e-6);
                     let change = p.irradiance.roots.abs_diff(q.irradiance.roots);
                     if near {
