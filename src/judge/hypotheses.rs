@@ -6,12 +6,11 @@
 //! - *Equivalent* [Schuirmann 1987], two one-sided tests: null hypothesis |E m - T'| ≥ μ T' for margin μ, for some T' in the
 //!   same interval. p is the larger of P(T > (m - (T + e)(1 - μ)) / s) and P(T > ((T - e)(1 + μ) - m) / s).
 //!
-//! Both are worst cases over where the truth can be, so the error probabilities hold whatever it is. They rest on means
-//! of replicates being close to normal; [`super::evidence`] says when they are taken to be.
+//! Both are worst cases over where the truth can be, so the error probabilities hold whatever it is. P is the tail of
+//! [`super::tails`], which allows for replicates that are skewed; [`super::evidence`] says how many contributions they need.
 
 use nephroid_analytic::camera::Bounded;
 
-use super::distributions::student_survival;
 use super::evidence::Sample;
 
 /// Probability that a suite of verdicts on correct integrators contains any false "different", by default.
@@ -41,16 +40,21 @@ impl Levels {
 
 /// p-value of "different", two-sided. 1 inside the truth's bounds.
 pub fn difference_p(sample: &Sample, truth: Bounded) -> f64 {
-    let distance = (sample.mean - truth.value).abs() - truth.error;
+    let off = sample.mean - truth.value;
+    let distance = off.abs() - truth.error;
     if distance <= 0.0 {
         return 1.0;
     }
-    2.0 * student_survival(distance / sample.standard_error(), sample.dof())
+    let p = sample.tail(off > 0.0).survival(distance / sample.standard_error());
+    (2.0 * p).min(1.0)
 }
 
 /// p-value of "equivalent" for a margin relative to the truth.
 pub fn equivalence_p(sample: &Sample, truth: Bounded, margin: f64) -> f64 {
+    let error = sample.standard_error();
+    // The mean is above the lower end of the margin, and below the upper one.
     let above = sample.mean - (truth.value + truth.error) * (1.0 - margin);
     let below = (truth.value - truth.error) * (1.0 + margin) - sample.mean;
-    student_survival(above.min(below) / sample.standard_error(), sample.dof())
+    let p = |distance: f64, upper: bool| sample.tail(upper).survival(distance / error);
+    p(above, true).max(p(below, false))
 }

@@ -2,6 +2,7 @@
 
 pub mod effort;
 pub mod expected;
+pub mod gather;
 pub mod replicates;
 pub mod run;
 pub mod sizing;

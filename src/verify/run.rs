@@ -2,26 +2,25 @@
 
 use std::time::Instant;
 
-use nephroid_analytic::camera::Bounded;
-
 use super::effort::Effort;
 use super::expected::Truths;
-use super::replicates::{Canvas, FINAL, Seeds, Shape, run as run_replicates};
-use super::sizing::{self, Check, Demand, Size};
+use super::gather::gather;
+use super::replicates::{Canvas, Seeds, Shape};
+use super::sizing::Demand;
 use super::suite::{Coverage, LeftOut, Pair, Subject, select};
 use super::verdicts::{ALL_CLASSES, NotRun, Outcome, Verdict, WHOLE_IMAGE};
 use crate::error::Error;
-use crate::integrators::{Integrator, Kernel, Prepared, Technique, Treatment};
-use crate::judge::evidence::{Replicate, Sample};
+use crate::integrators::{Integrator, Kernel, Technique, Treatment};
+use crate::judge::family::holm;
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
-use crate::judge::verdict::{Finding, State, decide};
+use crate::regions::Regions;
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
 const MERGING_ITERATIONS: u32 = 8;
-/// Paths of a replicate for each pixel: clearing and summing the film costs a tenth of drawing them.
-const PATHS_PER_PIXEL: u64 = 8;
+/// Paths of a replicate for each pixel: clearing and summing the film costs a fifth of drawing them.
+const PATHS_PER_PIXEL: u64 = 4;
 /// Fewest paths of a replicate.
-const FEWEST_PATHS: u64 = 1 << 16;
+const FEWEST_PATHS: u64 = 1 << 15;
 
 /// What to verify.
 pub struct Request {
@@ -77,6 +76,7 @@ pub fn run(
         progress(position, pairs.len(), scene, integrator);
         verdicts.extend(run_pair(request, pair, levels, checks, truths)?);
     }
+    settle(&mut verdicts, request.level, checks);
     Ok(Outcome {
         verdicts,
         not_run,
@@ -89,6 +89,25 @@ pub fn run(
         seed: request.seed,
         seconds: started.elapsed().as_secs_f64(),
     })
+}
+
+/// What is still undecided is decided by the error probability that the decided checks leave: Holm's procedure.
+fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
+    let p = |of: fn(&Verdict) -> Option<f64>| -> Vec<f64> {
+        verdicts.iter().map(|v| of(v).unwrap_or(f64::NAN)).collect()
+    };
+    let different = holm(&p(|v| v.finding.p_different), level, checks);
+    let equivalent = holm(&p(|v| v.finding.p_equivalent), EQUIVALENCE_LEVEL, checks);
+    for (verdict, (different, equivalent)) in
+        verdicts.iter_mut().zip(different.into_iter().zip(equivalent))
+    {
+        let levels = Levels {
+            different: different.unwrap_or(verdict.levels.different),
+            equivalent: equivalent.unwrap_or(verdict.levels.equivalent),
+        };
+        verdict.finding.settle(levels);
+        verdict.levels = levels;
+    }
 }
 
 fn run_pair(
@@ -105,10 +124,13 @@ fn run_pair(
     let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
     let shape = first_shape(integrator, pair, request.bandwidth, pixels);
     let kernel = request.kernel.and_then(|k| k.to_string().parse().ok());
-    let expected = truths.of(pair.scene, entry, &pair.plan, kernel, &shape.bandwidths)?;
+    let (width, height) = (entry.camera.width, entry.camera.height);
+    let regions = Regions::quadtree(width, height);
+    let bandwidths = &shape.bandwidths;
+    let expected = truths.of(pair.scene, entry, &pair.plan, &regions, kernel, bandwidths)?;
     let canvas = Canvas {
-        width: entry.camera.width,
-        height: entry.camera.height,
+        width,
+        height,
         classes: entry.kind.classes(),
     };
     let demand = Demand {
@@ -120,6 +142,7 @@ fn run_pair(
     let evidence = gather(
         || integrator.prepare(entry),
         canvas,
+        &regions,
         shape,
         seeds,
         &expected,
@@ -127,7 +150,10 @@ fn run_pair(
     );
     let seconds = started.elapsed().as_secs_f64();
     let command = command(request, &subject.argument, integrator.name(), checks);
-    let verdicts = judge(&evidence, &expected, demand)
+    let per_replicate = evidence.size.shape.paths();
+    let replicates = evidence.replicates;
+    let verdicts = evidence
+        .judged
         .into_iter()
         .map(|judged| {
             let treatment = judged.class.map(|c| pair.plan[c].treatment);
@@ -136,12 +162,12 @@ fn run_pair(
                 None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
             };
             let class = judged.class.map(|c| pair.plan[c].class.to_string());
-            let per_replicate = evidence.size.shape.paths();
+            let place = judged.finding.place.clone();
             Verdict {
                 scene: entry.name.clone(),
                 integrator: integrator.name().to_owned(),
                 class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
-                region: WHOLE_IMAGE.to_owned(),
+                region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
                 paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
                 finding: judged.finding,
                 truth: judged.truth,
@@ -149,8 +175,10 @@ fn run_pair(
                 margin: request.margin,
                 levels,
                 bandwidth: regularized.then_some(request.bandwidth),
-                replicates: evidence.replicates.len() as u32,
-                paths: evidence.replicates.len() as u64 * per_replicate,
+                tail: judged.tail,
+                replicates,
+                looks: evidence.looks,
+                paths: u64::from(replicates) * per_replicate,
                 seed: request.seed,
                 seconds,
                 command: command.clone(),
@@ -176,129 +204,6 @@ fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels:
     Shape {
         bandwidths: (0..iterations).map(|i| schedule.bandwidth(i)).collect(),
         paths_per_iteration: paths / u64::from(iterations),
-    }
-}
-
-/// The replicates of a final test.
-pub struct Evidence {
-    /// The replicates; none if nothing is claimed.
-    pub replicates: Vec<Replicate>,
-    /// What was planned.
-    pub size: Size,
-}
-
-/// Plans and runs the final test of one integrator on one scene. `expected` is the mean of each class, `None` for what is not
-/// sampled.
-pub fn gather(
-    prepare: impl FnOnce() -> Box<dyn Prepared>,
-    canvas: Canvas,
-    shape: Shape,
-    seeds: Seeds,
-    expected: &[Option<Bounded>],
-    demand: Demand,
-) -> Evidence {
-    let checks: Vec<Check> = regions(expected)
-        .into_iter()
-        .map(|(_, check)| check)
-        .collect();
-    if checks.is_empty() {
-        return Evidence {
-            replicates: Vec::new(),
-            size: Size {
-                shape,
-                replicates: 0,
-            },
-        };
-    }
-    let prepared = prepare();
-    let prepared = prepared.as_ref();
-    let size = sizing::plan(prepared, canvas, shape, seeds, &checks, demand);
-    let replicates = run_replicates(prepared, canvas, &size.shape, seeds, FINAL, size.replicates);
-    Evidence { replicates, size }
-}
-
-/// What is checked: each claimed class, and their sum (class `None`) if there are several.
-fn regions(expected: &[Option<Bounded>]) -> Vec<(Option<usize>, Check)> {
-    let claimed = || {
-        expected
-            .iter()
-            .enumerate()
-            .filter_map(|(i, e)| e.map(|e| (i, e)))
-    };
-    let mut regions: Vec<_> = claimed()
-        .map(|(i, truth)| {
-            let layers = vec![i];
-            (Some(i), Check { layers, truth })
-        })
-        .collect();
-    if regions.len() > 1 {
-        let truth = claimed().fold(Bounded::default(), |sum, (_, e)| Bounded {
-            value: sum.value + e.value,
-            error: sum.error + e.error,
-        });
-        let layers = claimed().map(|(i, _)| i).collect();
-        regions.push((None, Check { layers, truth }));
-    }
-    regions
-}
-
-/// A finding about one region.
-pub struct Judged {
-    /// Position of the class, `None` for the sum of those claimed.
-    pub class: Option<usize>,
-    /// What the mean should be.
-    pub truth: Option<Bounded>,
-    /// What it is.
-    pub mean: Option<f64>,
-    /// What follows.
-    pub finding: Finding,
-}
-
-/// Decides about every class in order, and then about their sum.
-pub fn judge(evidence: &Evidence, expected: &[Option<Bounded>], demand: Demand) -> Vec<Judged> {
-    let mut regions = regions(expected).into_iter().peekable();
-    let decided = |(class, check): (Option<usize>, Check)| {
-        let sample = Sample::of_layers(&evidence.replicates, &check.layers);
-        Judged {
-            class,
-            truth: Some(check.truth),
-            mean: Some(sample.mean),
-            finding: decide(&sample, check.truth, demand.margin, demand.levels),
-        }
-    };
-    let mut judged = Vec::new();
-    for position in 0..expected.len() {
-        match regions.next_if(|(class, _)| *class == Some(position)) {
-            Some(region) => judged.push(decided(region)),
-            None => judged.push(not_sampled(evidence, position)),
-        }
-    }
-    judged.extend(regions.map(decided));
-    judged
-}
-
-/// A class that is declared impossible must indeed stay empty.
-fn not_sampled(evidence: &Evidence, position: usize) -> Judged {
-    let sample = Sample::of_layers(&evidence.replicates, &[position]);
-    let finding = if sample.contributions > 0 {
-        Finding::bare(
-            State::Different,
-            format!(
-                "declared impossible, yet it has {} contributions",
-                sample.contributions
-            ),
-        )
-    } else {
-        Finding::bare(
-            State::NotSampled,
-            "the method cannot build paths of this class",
-        )
-    };
-    Judged {
-        class: Some(position),
-        truth: None,
-        mean: None,
-        finding,
     }
 }
 
