@@ -19,4 +19,5 @@ pub mod report;
 pub mod stability;
 pub mod stream;
 pub mod truth;
+pub mod variation;
 pub mod verify;
