@@ -280,8 +280,8 @@ impl<S: Scalar> Pillar<S> {
         let distance = s.hypot(self.light.z);
         let product = S::TWO * first * second / s;
         let transfer = self.light.z * self.radius / (distance.squared() * distance);
-        sum.error += self.intensity * self.reflectance * transfer * (margin + margin)
-            / product.squared();
+        sum.error +=
+            self.intensity * self.reflectance * transfer * (margin + margin) / product.squared();
     }
 
     /// At the foot of the side rounding decides whether the point is in front of it.
