@@ -103,6 +103,12 @@ pub trait Integrator: Send + Sync {
         Ok(())
     }
 
+    /// Whether the variance of a pixel that a fold crosses is infinite: true for methods that reach the light of a caustic
+    /// point by point without bias. Such pixels are left out of verdicts.
+    fn has_infinite_variance_at_folds(&self) -> bool {
+        false
+    }
+
     /// Compiles a validated scene that the method supports into what it must do on it and no more.
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared>;
 }

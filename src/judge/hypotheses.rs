@@ -58,7 +58,7 @@ pub fn equivalence_p(sample: &Sample, truth: Bounded, margin: f64) -> f64 {
     // The mean is above the lower end of the margin, and below the upper one.
     let above = sample.mean - (truth.value + truth.error) * (1.0 - margin);
     let below = (truth.value - truth.error) * (1.0 + margin) - sample.mean;
-    let p = |distance: f64, upper: bool| sample.tail(upper).survival(distance / error);
+    let p = |distance: f64, upper: bool| sample.tail(upper).one_sided().survival(distance / error);
     p(above, true).max(p(below, false))
 }
 

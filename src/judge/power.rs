@@ -61,7 +61,7 @@ fn standard_errors_needed(levels: Levels, replicates: f64) -> f64 {
     // Replicates that are no more skewed than what the tails allow for.
     let tail = Tail::new(replicates as usize, 0.0, false);
     let difference = tail.critical(0.5 * levels.different);
-    let equivalence = tail.critical(levels.equivalent);
+    let equivalence = tail.one_sided().critical(levels.equivalent);
     let dof = tail.dof();
     bias_for(Z_DETECTION, difference, dof).max(bias_for(Z_EQUIVALENCE, equivalence, dof))
 }
@@ -118,10 +118,11 @@ pub fn of_sample(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -
     let usable = usable_margin(truth, margin) / error;
     let tails = [sample.tail(true), sample.tail(false)];
     let dof = tails[0].dof();
-    let critical = |level: f64| tails[0].critical(level).max(tails[1].critical(level));
-    let different = critical(0.5 * levels.different);
+    let worse = |f: &dyn Fn(Tail) -> f64| f(tails[0]).max(f(tails[1]));
+    let different = worse(&|t| t.critical(0.5 * levels.different));
+    let equivalent = worse(&|t| t.one_sided().critical(levels.equivalent));
     let difference = one_sided_power(usable, different, dof);
-    let equivalence = one_sided_power(usable, critical(levels.equivalent), dof);
+    let equivalence = one_sided_power(usable, equivalent, dof);
     let detectable = bias_for(Z_DETECTION, different, dof) * error;
     Power {
         power: difference.min((2.0 * equivalence - 1.0).max(0.0)),

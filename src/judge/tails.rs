@@ -15,12 +15,12 @@
 //! with γ⁺ ≥ 0 the sample's skewness towards that tail plus twice its standard error √(6/R). The minimum is taken because
 //! the expansion holds for moderate y only, while P(T > x) ≤ P(T > y) always holds. What is made smaller by skewness is
 //! not used (γ⁺ ≥ 0). Below x = 3 the two tails' errors cancel in a two-sided test, and the t distribution is used as it
-//! is. With few replicates, of which the skewness is not known, the minimum may stay above a level however far out x is:
+//! is; a one-sided test has the factor from x = 0 on. With few replicates, of which the skewness is not known, the minimum may stay above a level however far out x is:
 //! then these replicates cannot decide, and more are drawn. `examples/calibration.rs` measures what is left of the error.
 
 use libm::{exp, log, sqrt};
 
-use super::distributions::{student_quantile, student_survival};
+use super::distributions::{student_density, student_quantile, student_survival};
 
 /// Up to here the t distribution is used as it is.
 const NEAR: f64 = 3.0;
@@ -33,6 +33,8 @@ pub struct Tail {
     dof: f64,
     /// γ⁺ / (3√R).
     growth: f64,
+    /// Up to here the t distribution is used as it is.
+    near: f64,
 }
 
 impl Tail {
@@ -45,6 +47,7 @@ impl Tail {
         Tail {
             dof: replicates.saturating_sub(1) as f64,
             growth: bound / (3.0 * sqrt(n)),
+            near: NEAR,
         }
     }
 
@@ -53,7 +56,13 @@ impl Tail {
         Tail {
             dof: replicates.saturating_sub(1) as f64,
             growth: 0.0,
+            near: NEAR,
         }
+    }
+
+    /// The same for a one-sided test, in which the errors of the two tails do not cancel.
+    pub fn one_sided(self) -> Self {
+        Tail { near: 0.0, ..self }
     }
 
     fn far(&self, y: f64) -> f64 {
@@ -81,36 +90,47 @@ impl Tail {
 
     /// An upper bound of the probability that the statistic exceeds `x`. NaN for a NaN.
     pub fn survival(&self, x: f64) -> f64 {
-        if !(x > NEAR) {
+        if !(x > self.near) {
             return student_survival(x, self.dof);
         }
-        let plain = student_survival(NEAR, self.dof);
-        plain.min(self.far(x.min(self.turning_point().max(NEAR))))
+        let plain = student_survival(self.near, self.dof);
+        plain.min(self.far(x.min(self.turning_point().max(self.near))))
     }
 
     /// The x with survival(x) = `level`; infinite if these replicates never get there.
     pub fn critical(&self, level: f64) -> f64 {
         let plain = student_quantile(level, self.dof);
-        if !(plain > NEAR) || self.growth == 0.0 {
+        if !(plain > self.near) || self.growth == 0.0 {
             return plain;
         }
         let end = self.turning_point();
         if !(end > plain) || self.far(end) > level {
             return f64::INFINITY;
         }
+        // Newton's method inside a bracket on log far(y) - log level, which falls all the way.
         let target = log(level);
         let (mut low, mut high) = (plain, end);
+        let mut y = plain;
         for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            let value =
-                log(student_survival(middle, self.dof)) + self.growth * middle * middle * middle;
-            if value > target {
-                low = middle;
+            let survival = student_survival(y, self.dof);
+            let value = log(survival) + self.growth * y * y * y - target;
+            if value > 0.0 {
+                low = y;
             } else {
-                high = middle;
+                high = y;
+            }
+            let slope = 3.0 * self.growth * y * y - student_density(y, self.dof) / survival;
+            let next = y - value / slope;
+            let inside = next > low && next < high;
+            let next = if inside { next } else { 0.5 * (low + high) };
+            let moved = (next - y).abs();
+            y = next;
+            if moved <= 1e-12 * y {
+                break;
             }
         }
-        high
+        // On the safe side of rounding.
+        y * (1.0 + 1e-11)
     }
 
     /// Degrees of freedom.

@@ -54,6 +54,7 @@ fn verdict(v: &Verdict) -> Value {
         "truth_error_bound": v.truth.map(|t| t.error),
         "bandwidth": v.bandwidth,
         "tiles": f.tiles,
+        "excluded": v.excluded.map(|e| json!({ "pixels": e.pixels, "energy": e.energy })),
         "tail_index": v.tail.map(|t| json!({
             "index": t.index, "standard_error": t.error, "stable": t.is_stable,
         })),

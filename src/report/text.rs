@@ -98,6 +98,19 @@ fn details(v: &Verdict) -> Vec<String> {
             truth.value, v.levels.different
         ));
     }
+    if let Some(e) = v.excluded.filter(|e| e.pixels > 0) {
+        lines.push(format!(
+            "excluded: {} pixels that a fold crosses, with {:.2} % of the light (the variance is infinite there)",
+            e.pixels,
+            100.0 * e.energy
+        ));
+    }
+    if v.tail.is_some_and(|t| t.variance_is_in_doubt()) && f.state != State::NotSampled {
+        lines.push(
+            "the largest pixels have a tail index of 2 or less: the variance may be infinite, and the tests not valid"
+                .to_owned(),
+        );
+    }
     if let Some(paths) = v.paths_needed {
         lines.push(format!("about {:.1e} paths would decide", paths as f64));
     }

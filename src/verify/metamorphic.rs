@@ -153,6 +153,7 @@ impl Varied {
             shape,
             regions: Regions::image(self.entry.camera.width, self.entry.camera.height),
             expected,
+            excluded: None,
             variation: Some(self.name()),
         };
         Ok(job.run(request, levels, checks, started))

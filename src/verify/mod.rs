@@ -1,6 +1,7 @@
 //! The suite: integrators against truths, from the choice of what to run to the list of verdicts.
 
 pub mod effort;
+pub mod excluded;
 pub mod expected;
 pub mod gather;
 pub mod metamorphic;

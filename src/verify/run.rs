@@ -6,6 +6,7 @@ use nephroid_analytic::bandwidth::Kernel as TruthKernel;
 use nephroid_analytic::scene::Entry;
 
 use super::effort::Effort;
+use super::excluded::{self, Excluded};
 use super::expected::{Expected, Truths};
 use super::gather::{Judged, gather};
 use super::metamorphic;
@@ -147,6 +148,8 @@ pub(super) struct Job<'a> {
     pub regions: Regions,
     /// What each class should be.
     pub expected: Vec<Option<Expected>>,
+    /// Pixels that are no part of this.
+    pub excluded: Option<Excluded>,
     /// How the scene was changed; `None` if it was not.
     pub variation: Option<String>,
 }
@@ -163,7 +166,17 @@ fn run_pair(
     let integrator = request.integrators[pair.integrator].as_ref();
     let entry = &subject.entry;
     let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
-    let regions = Regions::quadtree(entry.camera.width, entry.camera.height);
+    let (regions, left_out) = if integrator.has_infinite_variance_at_folds() {
+        match excluded::regions(entry) {
+            Some((regions, pixels)) => (regions, Some(pixels)),
+            None => return Ok(Vec::new()),
+        }
+    } else {
+        (
+            Regions::quadtree(entry.camera.width, entry.camera.height),
+            None,
+        )
+    };
     let expected = truths.of(
         pair.scene,
         entry,
@@ -172,6 +185,13 @@ fn run_pair(
         request.truth_kernel(),
         &shape.bandwidths,
     )?;
+    let (expected, excluded) = match left_out {
+        Some(pixels) => {
+            let (expected, excluded) = excluded::narrow(expected, &regions, pixels);
+            (expected, Some(excluded))
+        }
+        None => (expected, None),
+    };
     let job = Job {
         integrator: pair.integrator,
         argument: &subject.argument,
@@ -180,6 +200,7 @@ fn run_pair(
         shape,
         regions,
         expected,
+        excluded,
         variation: None,
     };
     Ok(job.run(request, levels, checks, started))
@@ -257,6 +278,7 @@ impl Job<'_> {
                 levels,
                 bandwidth: regularized.then_some(request.bandwidth),
                 tail: judged.tail,
+                excluded: self.excluded,
                 replicates,
                 looks: evidence.looks,
                 paths: u64::from(replicates) * per_replicate,

@@ -3,6 +3,7 @@
 use nephroid_analytic::camera::Bounded;
 
 use super::effort::Effort;
+use super::excluded::Excluded;
 use crate::judge::heavy::TailIndex;
 use crate::judge::hypotheses::Levels;
 use crate::judge::verdict::{Finding, exit_code};
@@ -37,6 +38,8 @@ pub struct Verdict {
     pub levels: Levels,
     /// Angle [rad] or radius [m] of the mollifier (of the first iteration); `None` for what is not regularized.
     pub bandwidth: Option<f64>,
+    /// Pixels that a fold crosses, where they are left out.
+    pub excluded: Option<Excluded>,
     /// Tail index of the replicates' largest pixels, where there are enough.
     pub tail: Option<TailIndex>,
     /// Independent repetitions.
