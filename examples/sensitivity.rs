@@ -57,7 +57,9 @@ impl Prepared for BrighterPrepared {
 }
 
 fn main() -> Result<(), nephroid::error::Error> {
-    println!("scene        lt too bright by  margin  class  state        bias      paths    seconds");
+    println!(
+        "scene        lt too bright by  margin  class  state        bias      paths    seconds"
+    );
     for scene in ["mirror-wall", "cup"] {
         for (bias, margin) in [(0.01, 0.005), (0.002, 0.001), (0.0, 0.005)] {
             let mut truths = Truths::for_margin(margin);
@@ -83,7 +85,11 @@ fn main() -> Result<(), nephroid::error::Error> {
                 kernel: None,
             };
             let outcome = run(&request, &mut truths, &|_, _, _, _| {})?;
-            for v in &outcome.verdicts {
+            for v in outcome
+                .verdicts
+                .iter()
+                .filter(|v| v.finding.effect.is_some())
+            {
                 println!(
                     "{scene:<12} {:>14.1} % {:>6.1} %  {:<6} {:<12} {:>+6.2} % {:>9.1e} {:>9.2}",
                     100.0 * bias,

@@ -6,8 +6,8 @@
 //! look one stops, for whatever reason: so a clear case ends early, an unclear one goes on, and a budget may end it. The
 //! schedule is fixed before the data of the test are seen; replicates of pilots are not among them.
 
-/// Fewest replicates at the first look.
-pub const FIRST_LOOK: u64 = 64;
+/// Fewest replicates at the first look: with fewer, their skewness is known too badly for the levels of a suite.
+pub const FIRST_LOOK: u64 = 256;
 
 /// One look at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,8 +22,9 @@ use crate::regions::Regions;
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
 const MERGING_ITERATIONS: u32 = 8;
-/// Paths of a replicate for each pixel: clearing and summing the film costs a fifth of drawing them.
-const PATHS_PER_PIXEL: u64 = 4;
+/// Paths of a replicate for each pixel: clearing and summing the film costs a third of drawing them,
+/// and a tile of 16 by 16 pixels gets the contributions that a test asks for.
+const PATHS_PER_PIXEL: u64 = 2;
 /// Fewest paths of a replicate.
 const FEWEST_PATHS: u64 = 1 << 15;
 
