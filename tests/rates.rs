@@ -1,0 +1,484 @@
+//! Rates: fits on synthetic data of known law, and integrators whose rates are right or wrong on purpose.
+//!
+//! Every study here shares a level of 1e-6 among its tests, so a false "different" anywhere in this file has a probability below
+//! 2e-5 in all; seeds are fixed.
+
+use libm::{cos, log, pow, sqrt};
+use nephroid::entry;
+use nephroid::film::Film;
+use nephroid::integrators::{Fault, Integrator, Plan, Prepared, Schedule, Settings, by_name};
+use nephroid::rates::bias::{self, Study};
+use nephroid::rates::converge;
+use nephroid::rates::counts::{none_of, p_bound};
+use nephroid::rates::expected::{expected, sharp};
+use nephroid::rates::outcome::State;
+use nephroid::rates::power_law::Design;
+use nephroid::rates::region::{View, interior};
+use nephroid::rates::runs::at_bandwidths;
+use nephroid::rates::variance::{variance_slope, variance_test};
+use nephroid::stream::{philox, uniform};
+use nephroid::verify::replicates::Seeds;
+use nephroid_analytic::bandwidth::{Kernel, Technique};
+use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::Entry;
+
+const LEVEL: f64 = 1e-6;
+
+/// Standard normal values one after the other.
+struct Normal {
+    seed: u32,
+    counter: u32,
+}
+
+impl Normal {
+    fn next(&mut self) -> f64 {
+        self.counter += 1;
+        let [a, b, c, d] = philox([self.counter, 9, 0, 0], [self.seed, 41]);
+        let (u, v) = (uniform(a, b), uniform(c, d));
+        sqrt(-2.0 * log(1.0 - u)) * cos(core::f64::consts::TAU * v)
+    }
+}
+
+const BANDWIDTHS: [f64; 4] = [0.4, 0.28, 0.2, 0.1];
+
+/// Replicates of y = c x² with noise that grows like 1/x, and their design.
+fn power_data(normal: &mut Normal, count: usize, c: f64) -> (Design, Vec<Vec<f64>>) {
+    let weights = BANDWIDTHS.map(|x| x * x);
+    let rows = (0..count)
+        .map(|_| BANDWIDTHS.map(|x| c * x * x + normal.next() / x).to_vec())
+        .collect();
+    (Design::new(&BANDWIDTHS, &weights), rows)
+}
+
+#[test]
+fn an_exponent_without_noise_is_exact() {
+    for p in [-3.0, -0.5, 0.0, 1.0 / 3.0, 2.0, 4.0] {
+        let design = Design::new(&BANDWIDTHS, &[1.0, 4.0, 0.1, 7.0]);
+        let y = BANDWIDTHS.map(|x| -3e-4 * pow(x, p));
+        assert!((design.exponent_of(&y) - p).abs() < 1e-6, "{p}");
+        // The contrast does not see the coefficient.
+        let t: f64 = design.contrast(p).iter().zip(y).map(|(a, y)| a * y).sum();
+        let size: f64 = design
+            .contrast(p)
+            .iter()
+            .zip(y)
+            .map(|(a, y)| (a * y).abs())
+            .sum();
+        assert!(t.abs() < 1e-12 * size);
+    }
+}
+
+/// Coverage of the 95 % interval from a strong signal down to none: 1000 data sets each, so a coverage below 92 % would be
+/// 4.4 standard deviations off.
+#[test]
+fn intervals_of_exponents_cover_at_any_noise() {
+    let mut normal = Normal {
+        seed: 3,
+        counter: 0,
+    };
+    for signal in [200.0, 30.0, 8.0, 2.0, 0.0] {
+        let (mut covered, mut bounded, mut rejected) = (0, 0, 0);
+        for _ in 0..1000 {
+            let (design, rows) = power_data(&mut normal, 16, signal);
+            let fit = design.fit(&rows, 0.05);
+            covered += u32::from((fit.interval[0]..=fit.interval[1]).contains(&2.0));
+            bounded += u32::from(fit.half_width().is_finite());
+            let exact = BANDWIDTHS.map(|x| signal * x * x);
+            rejected += u32::from(signal > 0.0 && design.p_value(&exact, &[0.0; 4], &rows) < 0.05);
+        }
+        println!(
+            "signal {signal}: covered {covered}, bounded {bounded}, rejected {rejected} of 1000"
+        );
+        assert!(covered >= 920, "signal {signal}: {covered}");
+        // The test at the exact exponent is exact: 50 ± 7 expected.
+        assert!(signal == 0.0 || (20..=85).contains(&rejected), "{rejected}");
+        // With a strong signal intervals are bounded, without any they are not.
+        assert!(signal < 200.0 || bounded == 1000);
+        assert!(signal > 0.0 || bounded < 100, "{bounded}");
+    }
+}
+
+#[test]
+fn slopes_of_variances_of_running_means() {
+    // Var ~ n⁻¹ from running means of white noise: the samples are shared between the n, and the jackknife knows.
+    let mut normal = Normal {
+        seed: 5,
+        counter: 0,
+    };
+    let n: Vec<f64> = (0..6).map(|k| f64::from(1 << k)).collect();
+    let (mut covered, trials) = (0, 200);
+    for _ in 0..trials {
+        let rows: Vec<Vec<f64>> = (0..64)
+            .map(|_| {
+                let (mut sum, mut row) = (0.0, Vec::new());
+                for i in 1..=32_u32 {
+                    sum += normal.next();
+                    if i.is_power_of_two() {
+                        row.push(sum / f64::from(i));
+                    }
+                }
+                row
+            })
+            .collect();
+        let slope = variance_slope(&n, &rows, 0.05);
+        covered += u32::from((slope.interval[0]..=slope.interval[1]).contains(&-1.0));
+        assert!(slope.p_value(-1.0) > 1e-7);
+    }
+    // 190 ± 3 expected.
+    println!("covered {covered} of {trials}");
+    assert!(covered >= 176, "{covered}");
+}
+
+#[test]
+fn bounds_of_counts_are_bounds() {
+    // Against the exact binomial tail, 2 P(S ≥ s), by summation.
+    let (n, q) = (40, 0.1_f64);
+    let term = |s: i32| {
+        let choose = (0..s).fold(1.0, |c, i| c * f64::from(n - i) / f64::from(i + 1));
+        choose * pow(q, f64::from(s)) * pow(1.0 - q, f64::from(n - s))
+    };
+    for s in 5..20 {
+        let exact: f64 = (s..=n).map(term).sum();
+        let bound = p_bound(s as u64, f64::from(n), 4.0, 0.0);
+        assert!(
+            bound >= exact && bound <= 30.0 * exact.max(0.02),
+            "{s}: {bound} {exact}"
+        );
+    }
+    assert_eq!(p_bound(4, 40.0, 4.0, 0.0), 1.0);
+    assert_eq!(p_bound(5, 40.0, 4.0, 1.0), 1.0);
+    assert_eq!(p_bound(1, 40.0, 0.0, 0.0), 0.0);
+    assert!((none_of(0.1, 40.0) - pow(0.9, 40.0)).abs() < 1e-15);
+}
+
+fn mirror_wall() -> Entry {
+    entry::load("mirror-wall").unwrap()
+}
+
+fn integrator(name: &str) -> Box<dyn Integrator> {
+    by_name(name, &Settings::default()).unwrap()
+}
+
+/// A change of what an iteration is asked for.
+#[derive(Clone, Copy)]
+enum Change {
+    /// The bandwidth never falls below this.
+    NeverBelow(f64),
+    /// The bandwidth of iteration i (from 1) is as for √i.
+    HalfTheExponent(f64),
+    /// Every iteration draws the random numbers of the first.
+    SameNumbers,
+    /// Half of the paths, each counted twice.
+    HalfThePaths,
+}
+
+/// An integrator with a defect of its rate.
+struct Changed(Box<dyn Integrator>, Change);
+
+struct PreparedChanged(Box<dyn Prepared>, Change);
+
+impl Integrator for Changed {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    fn title(&self) -> &'static str {
+        self.0.title()
+    }
+
+    fn plan(&self, entry: &Entry) -> Plan {
+        self.0.plan(entry)
+    }
+
+    fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
+        Box::new(PreparedChanged(self.0.prepare(entry), self.1))
+    }
+}
+
+impl Prepared for PreparedChanged {
+    fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
+        let (mut iteration, mut drawn, mut bandwidth) = (iteration, paths, bandwidth);
+        match self.1 {
+            Change::NeverBelow(least) => bandwidth = bandwidth.max(least),
+            Change::HalfTheExponent(first) => bandwidth = sqrt(first * bandwidth),
+            Change::SameNumbers => iteration = 0,
+            Change::HalfThePaths => drawn = paths / 2,
+        }
+        let scale = paths as f64 / drawn as f64;
+        let mut one = Film::new(film.width, film.height, film.classes);
+        self.0.iterate(seed, iteration, drawn, bandwidth, &mut one);
+        one.layers.iter_mut().flatten().for_each(|v| *v *= scale);
+        film.add(&one);
+        film.paths += paths - drawn;
+    }
+}
+
+fn bias_study(integrator: &dyn Integrator, technique: Option<Technique>, paths: u64) -> Study {
+    let entry = mirror_wall();
+    let request = bias::Request {
+        entry: &entry,
+        integrator,
+        kernel: None,
+        technique,
+        bandwidths: &BANDWIDTHS,
+        class: Some(PathClass::LSDE),
+        region: None,
+        paths: Some(paths),
+        replicates: 32,
+        seed: 11,
+        level: LEVEL,
+        half_width: 1.0,
+    };
+    let (mut studies, skipped) = bias::study(&request).unwrap();
+    assert!(skipped.is_empty() && studies.len() == 1);
+    studies.remove(0)
+}
+
+/// The order of the exact expectation is close to 2, and the measured one agrees; with prediction and measurement exchanged
+/// between techniques, or a bandwidth that stops shrinking, it does not.
+#[test]
+fn the_order_of_the_bias_of_regularized_path_tracing() {
+    let paths = 40_000_000;
+    let healthy = bias_study(integrator("pt-reg").as_ref(), None, paths);
+    println!(
+        "fitted {:.3} {:?}, predicted {:.4}, size {:?}, detectable {:.2}",
+        healthy.exponent.fitted,
+        healthy.exponent.interval,
+        healthy.predicted,
+        healthy.scale,
+        healthy.detectable
+    );
+    assert_eq!(healthy.state, State::Consistent, "{:?}", healthy.tests);
+    assert!((healthy.predicted - 2.0).abs() < 0.1);
+    let stuck = Changed(integrator("pt-reg"), Change::NeverBelow(0.28));
+    assert_eq!(bias_study(&stuck, None, paths).state, State::Different);
+    let other = bias_study(integrator("pt-reg").as_ref(), Some(Technique::Light), paths);
+    assert_eq!(other.state, State::Different);
+    // A normalisation that is right in the limit only.
+    let settings = Settings {
+        kernel: None,
+        fault: Some(Fault::KernelNormalizedByPiAlphaSquared),
+    };
+    let planar = by_name("pt-reg", &settings).unwrap();
+    assert_eq!(
+        bias_study(planar.as_ref(), None, paths).state,
+        State::Different
+    );
+}
+
+fn converge_studies(
+    integrator: &dyn Integrator,
+    schedule: &Schedule,
+    predicted: Option<&Schedule>,
+    [iterations, paths, replicates]: [u32; 3],
+    class: PathClass,
+) -> converge::Study {
+    let entry = mirror_wall();
+    let request = converge::Request {
+        entry: &entry,
+        integrator,
+        kernel: None,
+        technique: None,
+        schedule,
+        predicted_schedule: predicted,
+        class: Some(class),
+        region: None,
+        iterations,
+        paths_per_iteration: Some(u64::from(paths)),
+        replicates,
+        seed: 12,
+        level: LEVEL,
+        half_widths: [0.08, 3.0],
+    };
+    let (mut studies, skipped) = converge::study(&request).unwrap();
+    assert!(skipped.is_empty() && studies.len() == 1, "{skipped:?}");
+    studies.remove(0)
+}
+
+fn power_schedule(first: f64, lambda: f64, iterations: u32) -> Schedule {
+    let at = |i: u32| first * pow(f64::from(i), -lambda);
+    Schedule::List((1..=iterations).map(at).collect())
+}
+
+#[test]
+fn variance_and_bias_slopes_along_a_schedule() {
+    let sizes = [64, 2048, 256];
+    let schedule = Schedule::Progressive {
+        first: 0.4,
+        reduction: 2.0 / 3.0,
+    };
+    let run = |integrator: &dyn Integrator| {
+        converge_studies(integrator, &schedule, None, sizes, PathClass::LSDE)
+    };
+    let healthy = run(integrator("pt-reg").as_ref());
+    let (slope, predicted) = healthy.variance.unwrap();
+    println!(
+        "variance {slope:?}, predicted {predicted}, bias {:?}",
+        healthy.bias
+    );
+    assert_eq!(
+        healthy.state,
+        State::Consistent,
+        "{:?} {:?}",
+        healthy.tests,
+        healthy.remarks
+    );
+    // The exact sums are not yet at the asymptotic −2/3.
+    assert!((predicted + 2.0 / 3.0).abs() < 0.06 && (predicted + 2.0 / 3.0).abs() > 0.002);
+    // r in place of r² in the recursion: consistent as well, with other rates.
+    let halved = Changed(integrator("pt-reg"), Change::HalfTheExponent(0.4));
+    assert_eq!(run(&halved).state, State::Different);
+    // The same random numbers in every iteration: every mean is right, and the variance stays.
+    let repeated = Changed(integrator("pt-reg"), Change::SameNumbers);
+    assert_eq!(run(&repeated).state, State::Different);
+}
+
+#[test]
+fn an_estimator_without_bias_has_slope_minus_one() {
+    let schedule = Schedule::Fixed(0.2);
+    let sizes = [32, 16_384, 128];
+    for (name, class) in [("lt", PathClass::LSDE), ("pt", PathClass::LDE)] {
+        let study = converge_studies(integrator(name).as_ref(), &schedule, None, sizes, class);
+        let (slope, predicted) = study.variance.unwrap();
+        assert_eq!(predicted, -1.0);
+        assert!(
+            slope.p_value(-1.0) > LEVEL && slope.half_width() < 0.15,
+            "{slope:?}"
+        );
+        assert!(study.state != State::Different && study.bias.is_none());
+    }
+}
+
+/// Merging at a point: the variance of a photon map is that of its photons. λ = 0.6 > 1/2: the variance grows, most replicates
+/// see nothing any more, and the numbers of photons are those of the exact probabilities.
+#[test]
+fn a_schedule_beyond_the_window_starves() {
+    let sizes = [128, 256, 128];
+    let schedule = power_schedule(0.3, 0.6, 128);
+    let healthy = converge_studies(
+        integrator("ppm").as_ref(),
+        &schedule,
+        None,
+        sizes,
+        PathClass::LSDE,
+    );
+    assert!(healthy.state != State::Different, "{:?}", healthy.tests);
+    let (first, last) = (healthy.points[0], healthy.points[7]);
+    // The prediction itself: n^0.2/2.2 by facts.md, up to the finite sum.
+    let growth = last.predicted_variance.unwrap() / first.predicted_variance.unwrap();
+    assert!(growth > 1.0, "{growth}");
+    let events = last.events.unwrap();
+    println!("growth {growth:.3}, {events:?}, median {}", last.median);
+    assert!(events.expected_empty > 0.3 * 128.0 && last.median < 0.9);
+    // A bandwidth with a floor: every expectation stays within its error, the counts do not.
+    let floored = Changed(integrator("ppm"), Change::NeverBelow(0.06));
+    let study = converge_studies(&floored, &schedule, None, sizes, PathClass::LSDE);
+    assert_eq!(study.state, State::Different);
+    let count_tests = study.tests.iter().filter(|t| t.what.contains("not zero"));
+    assert!(count_tests.clone().any(|t| t.p < 1e-9), "{:?}", study.tests);
+}
+
+/// The variance of replicate means is (m₂ − mean²)/paths. 4096 replicates: a variance wrong by 15 % is found with probability 0.9 (χ² with
+/// the kurtosis of the number of contributions); a healthy one is rejected with probability below 1e-6 each.
+#[test]
+fn second_moments_of_regularized_path_tracing() {
+    let mut entry = mirror_wall();
+    (entry.camera.width, entry.camera.height) = (16, 16);
+    let bandwidth = 0.3;
+    let (technique, kernel) = (Technique::Camera, Kernel::Cone);
+    let whole = View::whole(&entry, "");
+    let part = View::pixels(&entry, [4, 6, 12, 12]).unwrap();
+    let close = interior(
+        &entry,
+        PathClass::LSDE,
+        technique,
+        kernel,
+        &[0.1, bandwidth],
+    );
+    let close = close.unwrap().unwrap();
+    for view in [whole, part, close] {
+        let exact = expected(&view, PathClass::LSDE, technique, kernel, &[bandwidth]).unwrap()[0];
+        let paths = 512;
+        let layer = entry
+            .kind
+            .classes()
+            .iter()
+            .position(|&c| c == PathClass::LSDE)
+            .unwrap();
+        let values = |integrator: &dyn Integrator| -> Vec<f64> {
+            let prepared = integrator.prepare(&view.entry);
+            let seeds = Seeds::new(21, "mirror-wall", "pt-reg");
+            at_bandwidths(
+                prepared.as_ref(),
+                &view,
+                layer,
+                &[bandwidth],
+                &[paths],
+                seeds,
+                4096,
+            )
+            .iter()
+            .map(|r| r.means[0])
+            .collect()
+        };
+        let variance = exact.variance() / paths as f64;
+        let kurtosis = 1.0 / (exact.effective_hit() * paths as f64);
+        let healthy = variance_test(&values(integrator("pt-reg").as_ref()), variance, kurtosis);
+        println!("{}: {healthy:?}", view.name);
+        assert!(healthy.p > LEVEL, "{}: {healthy:?}", view.name);
+        assert!(exact.second_moment.error < 1e-2 * variance * paths as f64);
+        let half = Changed(integrator("pt-reg"), Change::HalfThePaths);
+        let twice = variance_test(&values(&half), variance, kurtosis);
+        assert!(twice.p < LEVEL, "{}: {twice:?}", view.name);
+    }
+}
+
+/// Interior regions: the sharp truth of the pixels is the closed form at points, every bandwidth's expectation has the sign of the
+/// largest one's, and merging keeps off the circle of radius √(8/3) about (0.25, 2), where its α² coefficient is zero.
+#[test]
+fn regions_are_interior_and_their_bias_has_one_sign() {
+    let entry = mirror_wall();
+    for (technique, kernel) in [
+        (Technique::Camera, Kernel::Cone),
+        (Technique::Merge, Kernel::Disc),
+    ] {
+        for class in [PathClass::LSDE, PathClass::LSDSE] {
+            let view = interior(&entry, class, technique, kernel, &BANDWIDTHS)
+                .unwrap()
+                .unwrap();
+            let truth = sharp(&view, class).unwrap().unwrap();
+            let biases: Vec<f64> = expected(&view, class, technique, kernel, &BANDWIDTHS)
+                .unwrap()
+                .iter()
+                .map(|e| e.mean.value - truth.value)
+                .collect();
+            assert!(biases.iter().all(|b| b * biases[0] > 0.0), "{biases:?}");
+            let film = nephroid_analytic::bandwidth::film::FilmExpectation::new(
+                &view.entry,
+                technique,
+                kernel,
+                &[BANDWIDTHS[0]],
+            )
+            .unwrap();
+            for (u, v) in [(0.1, 0.1), (7.9, 0.1), (4.0, 4.0), (0.1, 7.9), (7.9, 7.9)] {
+                let point = film.at(class, u, v, 1e-6).unwrap();
+                assert!(point.is_interior, "{}", view.name);
+                assert!((point.sharp / truth.value - 1.0).abs() < 0.2);
+                // ∇²E/E = −6/D² + 15 h²/D⁴, and the bias is r²/8 times it, to r⁴.
+                let [x, y, _] = point.floor;
+                let h2 = (x - 0.25) * (x - 0.25) + (y - 2.0) * (y - 2.0);
+                let d2 = h2 + 4.0;
+                let laplacian = 15.0 * h2 / (d2 * d2) - 6.0 / d2;
+                let relative = point.moments.mean.value / point.sharp - 1.0;
+                if technique == Technique::Merge {
+                    let predicted = 0.02 * laplacian;
+                    assert!(
+                        (relative / predicted - 1.0).abs() < 0.15,
+                        "{relative} {predicted}"
+                    );
+                    assert!((h2 - 8.0 / 3.0).abs() > 0.3, "{h2}");
+                }
+            }
+        }
+    }
+}
