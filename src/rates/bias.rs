@@ -5,7 +5,7 @@ use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 
 use super::allocation::shares;
-use super::expected::{Expected, expected, mollified, sharp};
+use super::expected::{Expected, expected, mollified, sharp, unknown};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent, scale};
 use super::region::{View, interior};
@@ -22,6 +22,8 @@ pub const LEVEL: f64 = 1e-6;
 pub const CONFIDENCE: f64 = 0.95;
 /// An exponent is decided if its interval is not wider than this on either side, on average.
 pub const HALF_WIDTH: f64 = 0.15;
+/// A replicate's mean is taken as normal from so many contributions on.
+pub const FEWEST_CONTRIBUTIONS: u64 = 200;
 /// Replicates unless asked otherwise.
 pub const REPLICATES: u32 = 64;
 
@@ -74,6 +76,8 @@ pub struct Point {
     pub predicted_bias: f64,
     /// The squared bias without what noise adds to it: it may be negative.
     pub squared_bias: f64,
+    /// Whether a replicate has enough contributions for its mean to be normal: otherwise it is shown, and not used.
+    pub is_used: bool,
     /// The variance of a replicate against the exact one.
     pub variance: Option<VarianceTest>,
     /// 1/(V·T): V the relative variance of the mean, T the seconds of all threads that it took.
@@ -126,12 +130,39 @@ pub struct Skipped {
     pub reason: String,
 }
 
-/// Paths that take about as long with each technique: ten seconds of two cores.
+/// Paths that take about as long with each technique: some seconds of two cores.
 const fn default_paths(technique: Technique) -> u64 {
     match technique {
-        Technique::Merge => 80_000_000,
-        _ => 500_000_000,
+        Technique::Merge => 40_000_000,
+        _ => 250_000_000,
     }
+}
+
+/// The technique of the prediction: the one asked for, if its bandwidth is of the same kind as that of the integrator's.
+pub(super) fn chosen(
+    planned: Option<Technique>,
+    asked: Option<Technique>,
+) -> Result<Option<Technique>, InvalidParameter> {
+    let (Some(planned), Some(asked)) = (planned, asked) else {
+        return Ok(planned);
+    };
+    let fits = |t: &Technique| t.bandwidth_is_angle() == planned.bandwidth_is_angle();
+    if fits(&asked) {
+        return Ok(Some(asked));
+    }
+    let names: Vec<_> = Technique::ALL
+        .into_iter()
+        .filter(fits)
+        .map(Technique::name)
+        .collect();
+    Err(InvalidParameter {
+        key: "technique".to_owned(),
+        found: asked.to_string(),
+        allowed: format!(
+            "{} (the integrator's bandwidth is of that kind)",
+            names.join(", ")
+        ),
+    })
 }
 
 /// Studies each class that is regularized.
@@ -161,11 +192,15 @@ pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidPar
             }
             Treatment::Regularized(t) => mollified(t),
         };
-        let Some(technique) = request.technique.or(technique) else {
+        let Some(technique) = chosen(technique, request.technique)? else {
             skip("no exact expectation of this technique");
             continue;
         };
         let kernel = request.kernel.unwrap_or(technique.default_kernel());
+        if let Some(reason) = unknown(request.entry, technique, kernel) {
+            skip(&reason);
+            continue;
+        }
         let view =
             match request.region {
                 Some(corners) => Some(View::pixels(request.entry, corners).map_err(|allowed| {
@@ -307,7 +342,8 @@ fn judge(
             let exact = &truth.expected[i];
             // Samples that are all alike have the kurtosis of their number; others more, which the sample shows.
             let kurtosis = 1.0 / (exact.effective_hit() * paths[i] as f64);
-            let is_known = technique != Technique::Merge || view.is_close_up;
+            let is_used = kurtosis * FEWEST_CONTRIBUTIONS as f64 <= 1.0;
+            let is_known = is_used && (technique != Technique::Merge || view.is_close_up);
             let seconds: f64 = rows.iter().map(|r| r.seconds[i]).sum();
             Point {
                 bandwidth: request.bandwidths[i],
@@ -319,6 +355,7 @@ fn judge(
                 bias,
                 predicted_bias: predicted_bias[i],
                 squared_bias: bias * bias - variance / count,
+                is_used,
                 variance: is_known
                     .then(|| variance_test(&values, exact.variance() / paths[i] as f64, kurtosis)),
                 efficiency: mean * mean / (standard_error * standard_error * seconds),
@@ -328,20 +365,31 @@ fn judge(
     let weights: Vec<f64> = truth
         .expected
         .iter()
-        .zip(paths)
-        .map(|(e, &n)| n as f64 * count / e.variance().max(f64::MIN_POSITIVE))
+        .zip(paths.iter().zip(&points))
+        .map(|(e, (&n, p))| {
+            if p.is_used {
+                n as f64 * count / e.variance().max(f64::MIN_POSITIVE)
+            } else {
+                0.0
+            }
+        })
         .collect();
+    let is_fitted = points.iter().filter(|p| p.is_used).count() >= 2;
     let design = Design::new(request.bandwidths, &weights);
     let biases: Vec<Vec<f64>> = rows
         .iter()
         .map(|r| r.means.iter().map(|m| m - truth.sharp.value).collect())
         .collect();
-    let exponent = design.fit(&biases, 1.0 - CONFIDENCE);
+    let exponent = if is_fitted {
+        design.fit(&biases, 1.0 - CONFIDENCE)
+    } else {
+        Exponent::UNKNOWN
+    };
     let predicted = design.exponent_of(&predicted_bias);
     let (factor, factor_error) = scale(&weights, &predicted_bias, &biases);
 
     let mut tests = Vec::new();
-    for p in &points {
+    for p in points.iter().filter(|p| p.is_used) {
         let distance = (p.mean - p.expected.value).abs() - p.expected.error;
         let at = p.bandwidth;
         tests.push(Test {
@@ -359,34 +407,37 @@ fn judge(
             });
         }
     }
-    tests.push(Test {
-        what: "order of the bias is that of the exact expectation".to_owned(),
-        p: design.p_value(&predicted_bias, &errors, &biases),
-    });
-    // What the truth is not known to, relative to the bias.
-    let known_to = errors
-        .iter()
-        .zip(&predicted_bias)
-        .map(|(e, b)| e / b.abs())
-        .fold(0.0, f64::max);
-    tests.push(Test {
-        what: "size of the bias is that of the exact expectation".to_owned(),
-        p: {
-            let distance = (factor - 1.0).abs() - known_to;
-            if distance <= 0.0 {
-                1.0
-            } else {
-                2.0 * student_survival(distance / factor_error, count - 1.0)
-            }
-        },
-    });
+    if is_fitted {
+        tests.push(Test {
+            what: "order of the bias is that of the exact expectation".to_owned(),
+            p: design.p_value(&predicted_bias, &errors, &biases),
+        });
+        // What the truth is not known to, relative to the bias.
+        let known_to = errors
+            .iter()
+            .zip(&predicted_bias)
+            .map(|(e, b)| e / b.abs())
+            .fold(0.0, f64::max);
+        tests.push(Test {
+            what: "size of the bias is that of the exact expectation".to_owned(),
+            p: {
+                let distance = (factor - 1.0).abs() - known_to;
+                if distance <= 0.0 {
+                    1.0
+                } else {
+                    2.0 * student_survival(distance / factor_error, count - 1.0)
+                }
+            },
+        });
+    }
     let half_width = exponent.half_width();
     let is_resolved = half_width <= request.half_width;
-    let share = request.level / tests.len() as f64;
+    let share = request.level / tests.len().max(1) as f64;
     let quantiles = student_quantile(0.5 * share, count - 1.0) + student_quantile(0.1, count - 1.0);
     // Of the design, not of the data: with the exact bias for c.
     let a = design.contrast(predicted);
-    let noise = a.iter().zip(&weights).map(|(a, w)| a * a / w).sum::<f64>();
+    let used = a.iter().zip(&weights).filter(|(_, w)| **w > 0.0);
+    let noise = used.map(|(a, w)| a * a / w).sum::<f64>();
     let ideal_error = noise.sqrt() / design.sensitivity(predicted, &predicted_bias);
     let total: u64 = points.iter().map(|p| p.paths).sum();
     let wanted = request.half_width / t;
@@ -401,7 +452,7 @@ fn judge(
         predicted,
         scale: [factor, t * factor_error],
         detectable: quantiles * ideal_error,
-        state: state(&tests, request.level, is_resolved),
+        state: state(&tests, request.level, is_resolved && is_fitted),
         tests,
         paths_needed: (!is_resolved)
             .then(|| total as f64 * (ideal_error / wanted) * (ideal_error / wanted) * 1.2),

@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::bias::{CONFIDENCE, Skipped, Study};
+use super::bias::{CONFIDENCE, FEWEST_CONTRIBUTIONS, Skipped, Study};
 
 /// Numbers that JSON cannot hold become null.
 pub(super) fn number(v: f64) -> Value {
@@ -106,6 +106,13 @@ pub fn bias_table(scene: &str, integrator: &str, studies: &[Study], skipped: &[S
             s.detectable,
             s.state
         );
+        let left_out = s.points.iter().filter(|p| !p.is_used).count();
+        if left_out > 0 {
+            let _ = writeln!(
+                out,
+                "  {left_out} of the bandwidths have fewer than {FEWEST_CONTRIBUTIONS} contributions in a replicate and are not used: more paths"
+            );
+        }
         let failed = s.tests.iter().filter(|t| !(t.p > 1e-3));
         for test in failed {
             let _ = writeln!(out, "  {}: p = {:.1e}", test.what, test.p);
@@ -160,6 +167,7 @@ fn class(s: &Study) -> Value {
                 "interval": interval([p.bias - p.half_interval, p.bias + p.half_interval]),
                 "predicted_bias": p.predicted_bias,
                 "squared_bias": number(p.squared_bias),
+                "used": p.is_used,
                 "variance_over_exact": p.variance.map(|v| number(v.ratio)),
                 "variance_p": p.variance.map(|v| number(v.p)),
                 "efficiency": number(p.efficiency),
@@ -181,15 +189,15 @@ fn class(s: &Study) -> Value {
         "sharp": s.sharp.value,
         "sharp_bound": s.sharp.error,
         "state": s.state.name(),
-        "fitted": s.exponent.fitted,
-        "predicted": s.predicted,
+        "fitted": number(s.exponent.fitted),
+        "predicted": number(s.predicted),
         "interval": interval(s.exponent.interval),
         "half_width": number(s.exponent.half_width()),
         "detectable": number(s.detectable),
-        "size_of_bias": s.scale[0],
+        "size_of_bias": number(s.scale[0]),
         "size_of_bias_interval": interval([s.scale[0] - s.scale[1], s.scale[0] + s.scale[1]]),
         "paths": s.paths,
-        "paths_needed": s.paths_needed,
+        "paths_needed": s.paths_needed.map(number),
         "seconds": s.seconds,
         "points": points,
         "tests": tests,

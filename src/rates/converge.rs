@@ -14,9 +14,9 @@ use nephroid_analytic::bandwidth::{Bounded, Kernel, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 
-use super::bias::{CONFIDENCE, Skipped};
+use super::bias::{CONFIDENCE, Skipped, chosen};
 use super::counts::{none_of, p_bound};
-use super::expected::{Expected, expected, mollified, sharp};
+use super::expected::{Expected, expected, mollified, sharp, unknown};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent};
 use super::region::{View, interior};
@@ -39,6 +39,9 @@ pub const REPLICATES: u32 = 512;
 const ROUGHEST_VARIANCE: f64 = 0.3;
 /// Probabilities of a hit are interpolated and averaged over a close-up to better than this.
 const KNOWN_TO: f64 = 1e-3;
+/// A mean over all replicates is taken as normal if it consists of at least so many contributions: its skewness is then below 0.023,
+/// and a tail of 1e-7 wrong by less than a factor of two.
+const FEWEST_CONTRIBUTIONS: f64 = 2000.0;
 /// A bias enters the fit if it is known to this part of itself.
 const KNOWN_BIAS: f64 = 0.05;
 
@@ -89,6 +92,8 @@ pub struct Point {
     pub variance: f64,
     /// See `variance`.
     pub variance_error: Option<f64>,
+    /// Whether the mean over the replicates has enough contributions to be normal: otherwise only their number is tested.
+    pub is_normal: bool,
     /// What it should be, up to the constant of a law where there is no exact second moment.
     pub predicted_variance: Option<f64>,
     /// The mean minus the sharp truth, and half of its interval.
@@ -184,13 +189,17 @@ pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidPar
                 continue;
             }
             Treatment::Exact(_) => None,
-            Treatment::Regularized(t) => match request.technique.or(mollified(t)) {
-                Some(t) => Some(t),
-                None => {
+            Treatment::Regularized(t) => {
+                let Some(t) = chosen(mollified(t), request.technique)? else {
                     skip("no exact expectation of this technique");
                     continue;
+                };
+                if let Some(reason) = unknown(request.entry, t, kernel_of(request, t)) {
+                    skip(&reason);
+                    continue;
                 }
-            },
+                Some(t)
+            }
         };
         let Some(view) = view(request, class, technique)? else {
             skip(
@@ -260,9 +269,16 @@ struct Law {
     variances: Option<Vec<f64>>,
     /// Relative standard errors of the variances of so many replicates.
     variance_errors: Option<Vec<f64>>,
+    /// Contributions of which the mean over all replicates consists, in effect.
+    contributions: Option<Vec<f64>>,
 }
 
 impl Law {
+    fn is_normal(&self, k: usize) -> bool {
+        let is_enough = |c: &Vec<f64>| c[k] >= FEWEST_CONTRIBUTIONS;
+        self.contributions.as_ref().is_none_or(is_enough)
+    }
+
     fn new(
         request: &Request,
         class: PathClass,
@@ -282,6 +298,7 @@ impl Law {
                 means: ns().map(|_| sharp).collect(),
                 variances: None,
                 variance_errors: None,
+                contributions: None,
             });
         };
         let schedule = request.predicted_schedule.unwrap_or(request.schedule);
@@ -289,6 +306,7 @@ impl Law {
         let kernel = kernel_of(request, technique);
         let iterations = expected(view, class, technique, kernel, &schedule)?;
         let (mut means, mut variances, mut errors) = (Vec::new(), Vec::new(), Vec::new());
+        let mut contributions = Vec::new();
         let (mut sum, mut squares, mut fourths) = (Bounded::default(), 0.0, 0.0);
         for (n, e) in (1_u32..).zip(&iterations) {
             let variance = e.variance() / paths as f64;
@@ -306,6 +324,7 @@ impl Law {
                 variances.push(squares / (n * n));
                 let kurtosis = fourths / (squares * squares);
                 errors.push(f64::sqrt((2.0 + kurtosis) / f64::from(request.replicates)));
+                contributions.push(f64::from(request.replicates) / kurtosis);
             }
         }
         let is_known = technique != Technique::Merge || view.is_close_up;
@@ -314,6 +333,7 @@ impl Law {
             means,
             variances: is_known.then_some(variances),
             variance_errors: Some(errors),
+            contributions: Some(contributions),
         })
     }
 }
@@ -370,17 +390,17 @@ fn of_class(
         .filter(|&i| points[i].variance > 0.0)
         .collect();
     let n: Vec<f64> = points.iter().map(|p| f64::from(p.iterations)).collect();
-    let chosen = |values: &[f64]| usable.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+    let select = |values: &[f64]| usable.iter().map(|&i| values[i]).collect::<Vec<f64>>();
     let mut variance = None;
     if technique.is_some() && law.variances.is_none() {
         remarks.push("the variance of merging is predicted for regions that are small against the radius only".to_owned());
     } else if usable.len() >= 3 {
-        let at = chosen(&n);
-        let rows: Vec<Vec<f64>> = rows.iter().map(|r| chosen(&r.means)).collect();
+        let at = select(&n);
+        let rows: Vec<Vec<f64>> = rows.iter().map(|r| select(&r.means)).collect();
         let slope = variance_slope(&at, &rows, 1.0 - CONFIDENCE);
         let predicted = match &law.variances {
             Some(v) => {
-                let v = chosen(v);
+                let v = select(v);
                 let terms = slope_contrast(&at).into_iter().zip(v);
                 terms.map(|(a, v)| a * libm::log(v)).sum()
             }
@@ -413,10 +433,10 @@ fn of_class(
     let mut bias = None;
     if technique.is_some() {
         let (exponent, predicted, p) = bias_exponent(&n, sharp, &law, &rows, paths);
-        tests.push(Test {
+        tests.extend(p.map(|p| Test {
             what: "slope of the bias is that of the exact expectations".to_owned(),
             p,
-        });
+        }));
         if !(2.0 * exponent.half_width() <= request.half_widths[1]) {
             is_resolved = false;
             remarks.push("the slope of the squared bias is not known well enough: more paths in an iteration".to_owned());
@@ -430,7 +450,7 @@ fn of_class(
         let distance = (p.mean - p.expected.value).abs() - p.expected.error;
         let error = f64::sqrt(p.variance / f64::from(request.replicates));
         // A mean of rare spikes is not normal enough for a t test; their number is tested instead.
-        if p.variance_error.is_none_or(|e| e <= ROUGHEST_VARIANCE) {
+        if p.is_normal {
             tests.push(Test {
                 what: format!(
                     "mean of {} iterations is the exact expectation",
@@ -472,7 +492,7 @@ fn bias_exponent(
     law: &Law,
     rows: &[Along],
     paths: u64,
-) -> (Exponent, f64, f64) {
+) -> (Exponent, f64, Option<f64>) {
     let exact: Vec<f64> = law.means.iter().map(|m| m.value - sharp.value).collect();
     let errors: Vec<f64> = law.means.iter().map(|m| m.error + sharp.error).collect();
     let variances: Vec<f64> = match &law.variances {
@@ -482,8 +502,9 @@ fn bias_exponent(
     let weights: Vec<f64> = variances
         .iter()
         .zip(exact.iter().zip(&errors))
-        .map(|(v, (b, e))| {
-            if *e <= KNOWN_BIAS * b.abs() {
+        .enumerate()
+        .map(|(k, (v, (b, e)))| {
+            if *e <= KNOWN_BIAS * b.abs() && law.is_normal(k) {
                 1.0 / v
             } else {
                 0.0
@@ -491,13 +512,16 @@ fn bias_exponent(
         })
         .collect();
     let design = Design::new(n, &weights);
+    if weights.iter().filter(|w| **w > 0.0).count() < 2 {
+        return (Exponent::UNKNOWN, f64::NAN, None);
+    }
     let biases: Vec<Vec<f64>> = rows
         .iter()
         .map(|r| r.means.iter().map(|m| m - sharp.value).collect())
         .collect();
     let exponent = design.fit(&biases, 1.0 - CONFIDENCE);
     let p = design.p_value(&exact, &errors, &biases);
-    (exponent, design.exponent_of(&exact), p)
+    (exponent, design.exponent_of(&exact), Some(p))
 }
 
 /// Events since the n before, where the probabilities of a hit are known.
@@ -604,6 +628,7 @@ fn points(
                 expected: law.means[k],
                 variance,
                 variance_error: law.variance_errors.as_ref().map(|e| e[k]),
+                is_normal: law.is_normal(k),
                 predicted_variance: law.variances.as_ref().map(|v| v[k]),
                 bias,
                 half_interval: t * f64::sqrt(variance / count),

@@ -179,7 +179,7 @@ fn class(s: &Study) -> Value {
     });
     let bias = s.bias.map(|(exponent, predicted)| {
         json!({
-            "fitted": 2.0 * exponent.fitted, "predicted": 2.0 * predicted,
+            "fitted": number(2.0 * exponent.fitted), "predicted": number(2.0 * predicted),
             "interval": interval(exponent.interval.map(|v| 2.0 * v)),
             "half_width": number(2.0 * exponent.half_width()),
         })

@@ -4,7 +4,7 @@ use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Bounded, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::pixel::PixelTruth;
-use nephroid_analytic::scene::InvalidParameter;
+use nephroid_analytic::scene::{Entry, InvalidParameter};
 use rayon::prelude::*;
 
 use super::region::View;
@@ -76,11 +76,46 @@ pub fn sharp(view: &View, class: PathClass) -> Result<Option<Bounded>, InvalidPa
     Ok(Some(sum))
 }
 
+/// Why there are no exact expectations for a scene, if there are none.
+pub fn unknown(entry: &Entry, technique: Technique, kernel: Kernel) -> Option<String> {
+    let film = FilmExpectation::new(entry, technique, kernel, &[0.1]);
+    let error = film.err().filter(|e| e.key == "kind")?;
+    Some(format!(
+        "no exact expectation at finite bandwidth for the kind {}",
+        error.found
+    ))
+}
+
 /// What is expected at each bandwidth.
 ///
 /// # Errors
 /// What [`FilmExpectation::new`] finds.
 pub fn expected(
+    view: &View,
+    class: PathClass,
+    technique: Technique,
+    kernel: Kernel,
+    bandwidths: &[f64],
+) -> Result<Vec<Expected>, InvalidParameter> {
+    let mut all = at_points(view, class, technique, kernel, bandwidths)?;
+    if technique != Technique::Merge || !view.is_close_up {
+        return Ok(all);
+    }
+    let film = FilmExpectation::new(&view.entry, technique, kernel, &bandwidths[..1])?;
+    let points = floor_points(&film, class, view);
+    for (e, &r) in all.iter_mut().zip(bandwidths) {
+        // A photon within r of some point of the region is within r + half its diameter of the middle.
+        let grown = 1.0 + 0.5 * diameter(&points) / r;
+        e.excess = grown * grown - 1.0;
+        let shared = overlap(&points, kernel, r);
+        e.second_moment.value *= shared;
+        e.second_moment.error *= shared;
+    }
+    Ok(all)
+}
+
+/// The same as if each camera path had photons of its own.
+fn at_points(
     view: &View,
     class: PathClass,
     technique: Technique,
@@ -115,9 +150,6 @@ pub fn expected(
         error: v.error * by,
     };
     let nodes = || nodes.iter().zip(&rule.bandwidths);
-    let most_excess = nodes()
-        .map(|(e, b)| e.excess * (b / low))
-        .fold(0.0, f64::max);
     let means: Vec<Bounded> = nodes().map(|(e, _)| e.mean).collect();
     let seconds: Vec<Bounded> = nodes()
         .map(|(e, b)| scaled(e.second_moment, b * b))
@@ -136,8 +168,7 @@ pub fn expected(
         hit: hits
             .as_ref()
             .map(|h| rule.average(h, |b| b * b, &[b]).value),
-        // Less than a length over b, or its square, from that at the smallest.
-        excess: most_excess * low / b,
+        excess: 0.0,
     };
     Ok(bandwidths.iter().map(interpolated).collect())
 }
@@ -163,20 +194,11 @@ fn at(
         value: by * b.value,
         error: by * b.error,
     };
-    let mut second = per(moments.second_moment, view.dilution() / view.area());
-    let mut excess = 0.0;
-    if technique == Technique::Merge && view.is_close_up {
-        let points = floor_points(&film, class, view);
-        // A photon within r of some point of the region is within r + half its diameter of the middle.
-        let grown = 1.0 + 0.5 * diameter(&points) / bandwidth;
-        excess = grown * grown - 1.0;
-        second = per(second, overlap(&points, kernel, bandwidth));
-    }
     Ok(Expected {
         mean: per(moments.mean, 1.0 / view.area()),
-        second_moment: second,
+        second_moment: per(moments.second_moment, view.dilution() / view.area()),
         hit: hit(&film, class, view),
-        excess,
+        excess: 0.0,
     })
 }
 

@@ -3,6 +3,7 @@
 use core::fmt::Write as _;
 
 use super::bias::Study as BiasStudy;
+use super::bias_report::range;
 use super::converge::Study as ConvergeStudy;
 
 /// Size of a panel, and of the plot in it [px].
@@ -46,10 +47,9 @@ pub fn bias_svg(scene: &str, integrator: &str, studies: &[BiasStudy]) -> String 
             Panel {
                 title: format!("{scene}, {integrator}, {}", s.class),
                 subtitle: format!(
-                    "order {:.3} [{:.3}, {:.3}], predicted {:.3}: {}",
+                    "order {:.3} {}, predicted {:.3}: {}",
                     s.exponent.fitted,
-                    s.exponent.interval[0],
-                    s.exponent.interval[1],
+                    range(s.exponent.interval),
                     s.predicted,
                     s.state
                 ),
@@ -82,8 +82,9 @@ pub fn converge_svg(scene: &str, integrator: &str, studies: &[ConvergeStudy]) ->
             .variance
             .map_or("not fitted".to_owned(), |(slope, predicted)| {
                 format!(
-                    "slope {:.3} [{:.3}, {:.3}], predicted {predicted:.3}",
-                    slope.fitted, slope.interval[0], slope.interval[1]
+                    "slope {:.3} {}, predicted {predicted:.3}",
+                    slope.fitted,
+                    range(slope.interval)
                 )
             });
         let law = |p: &super::converge::Point| {
@@ -125,8 +126,9 @@ pub fn converge_svg(scene: &str, integrator: &str, studies: &[ConvergeStudy]) ->
         panels.push(Panel {
             title: format!("{scene}, {integrator}, {}: bias", s.class),
             subtitle: format!(
-                "slope {:.3} [{:.3}, {:.3}], predicted {predicted:.3}",
-                exponent.fitted, exponent.interval[0], exponent.interval[1]
+                "slope {:.3} {}, predicted {predicted:.3}",
+                exponent.fitted,
+                range(exponent.interval)
             ),
             x_label: "iterations".to_owned(),
             y_label: format!("{}bias / truth", if sign < 0.0 { "−" } else { "" }),

@@ -47,6 +47,13 @@ pub struct Exponent {
 }
 
 impl Exponent {
+    /// Nothing is known.
+    pub const UNKNOWN: Exponent = Exponent {
+        fitted: f64::NAN,
+        interval: [f64::NEG_INFINITY, f64::INFINITY],
+        standard_error: f64::INFINITY,
+    };
+
     /// Half of the interval's width.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.interval[1] - self.interval[0])
