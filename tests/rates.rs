@@ -20,7 +20,7 @@ use nephroid::stream::{philox, uniform};
 use nephroid::verify::replicates::Seeds;
 use nephroid_analytic::bandwidth::{Kernel, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::Entry;
+use nephroid_analytic::scene::{Entry, Kind};
 
 const LEVEL: f64 = 1e-6;
 
@@ -68,17 +68,17 @@ fn an_exponent_without_noise_is_exact() {
     }
 }
 
-/// Coverage of the 95 % interval from a strong signal down to none: 1000 data sets each, so a coverage below 92 % would be
-/// 4.4 standard deviations off.
+/// Coverage of the 95 % interval from a strong signal down to none, 400 data sets each: fewer than 358 covered would be 4.9 standard
+/// deviations off, and fewer than 3 or more than 46 rejections of the truth at level 0.05 have a probability of 6e-7.
 #[test]
 fn intervals_of_exponents_cover_at_any_noise() {
     let mut normal = Normal {
         seed: 3,
         counter: 0,
     };
-    for signal in [200.0, 30.0, 8.0, 2.0, 0.0] {
+    for signal in [200.0, 30.0, 8.0, 0.0] {
         let (mut covered, mut bounded, mut rejected) = (0, 0, 0);
-        for _ in 0..1000 {
+        for _ in 0..400 {
             let (design, rows) = power_data(&mut normal, 16, signal);
             let fit = design.fit(&rows, 0.05);
             covered += u32::from((fit.interval[0]..=fit.interval[1]).contains(&2.0));
@@ -87,14 +87,13 @@ fn intervals_of_exponents_cover_at_any_noise() {
             rejected += u32::from(signal > 0.0 && design.p_value(&exact, &[0.0; 4], &rows) < 0.05);
         }
         println!(
-            "signal {signal}: covered {covered}, bounded {bounded}, rejected {rejected} of 1000"
+            "signal {signal}: covered {covered}, bounded {bounded}, rejected {rejected} of 400"
         );
-        assert!(covered >= 920, "signal {signal}: {covered}");
-        // The test at the exact exponent is exact: 50 ± 7 expected.
-        assert!(signal == 0.0 || (20..=85).contains(&rejected), "{rejected}");
+        assert!(covered >= 358, "signal {signal}: {covered}");
+        assert!(signal == 0.0 || (3..=46).contains(&rejected), "{rejected}");
         // With a strong signal intervals are bounded, without any they are not.
-        assert!(signal < 200.0 || bounded == 1000);
-        assert!(signal > 0.0 || bounded < 100, "{bounded}");
+        assert!(signal < 200.0 || bounded == 400);
+        assert!(signal > 0.0 || bounded < 40, "{bounded}");
     }
 }
 
@@ -124,9 +123,9 @@ fn slopes_of_variances_of_running_means() {
         covered += u32::from((slope.interval[0]..=slope.interval[1]).contains(&-1.0));
         assert!(slope.p_value(-1.0) > 1e-7);
     }
-    // 190 ± 3 expected.
+    // 190 ± 3 expected; fewer than 174 would be five standard deviations off.
     println!("covered {covered} of {trials}");
-    assert!(covered >= 176, "{covered}");
+    assert!(covered >= 174, "{covered}");
 }
 
 #[test]
@@ -214,9 +213,17 @@ impl Prepared for PreparedChanged {
 }
 
 fn bias_study(integrator: &dyn Integrator, technique: Option<Technique>, paths: u64) -> Study {
-    let entry = mirror_wall();
+    study_of(&mirror_wall(), integrator, technique, paths)
+}
+
+fn study_of(
+    entry: &Entry,
+    integrator: &dyn Integrator,
+    technique: Option<Technique>,
+    paths: u64,
+) -> Study {
     let request = bias::Request {
-        entry: &entry,
+        entry,
         integrator,
         kernel: None,
         technique,
@@ -234,7 +241,8 @@ fn bias_study(integrator: &dyn Integrator, technique: Option<Technique>, paths: 
     studies.remove(0)
 }
 
-/// The order of the exact expectation is close to 2, and the measured one agrees; with prediction and measurement exchanged
+/// The order of the exact expectation is close to 2, and the measured one agrees (an order wrong by 1.3 is found with probability 0.9, a
+/// size of the bias wrong by a quarter); with prediction and measurement exchanged
 /// between techniques, or a bandwidth that stops shrinking, it does not.
 #[test]
 fn the_order_of_the_bias_of_regularized_path_tracing() {
@@ -252,19 +260,70 @@ fn the_order_of_the_bias_of_regularized_path_tracing() {
     // α² with a correction of relative order α²: not 2 exactly, and known from the expectation.
     assert!((healthy.predicted - 2.0).abs() < 0.15 && (healthy.predicted - 2.0).abs() > 0.02);
     let stuck = Changed(integrator("pt-reg"), Change::NeverBelow(0.4));
-    assert_eq!(bias_study(&stuck, None, paths).state, State::Different);
-    let other = bias_study(integrator("pt-reg").as_ref(), Some(Technique::Light), paths);
+    assert_eq!(bias_study(&stuck, None, paths / 2).state, State::Different);
+    let other = bias_study(
+        integrator("pt-reg").as_ref(),
+        Some(Technique::Light),
+        paths / 2,
+    );
     assert_eq!(other.state, State::Different);
-    // A normalisation that is right in the limit only.
+    // A kernel whose mass grows as the bandwidth shrinks.
     let settings = Settings {
         kernel: None,
-        fault: Some(Fault::KernelNormalizedByPiAlphaSquared),
+        fault: Some(Fault::RadiusForRadiusSquared),
     };
-    let planar = by_name("pt-reg", &settings).unwrap();
+    let heavy = by_name("pt-reg", &settings).unwrap();
     assert_eq!(
-        bias_study(planar.as_ref(), None, paths).state,
+        bias_study(heavy.as_ref(), None, paths / 2).state,
         State::Different
     );
+}
+
+/// A wide wall and a low light close to it: at a radius of 0.4 m merging has a bias of a tenth, far from every edge. (On `mirror-wall`
+/// the interior bias of merging is half a per cent, and photons enough to know its order would take hours.)
+fn low_light() -> Entry {
+    let mut entry = mirror_wall();
+    let Kind::PlanarMirror(scene) = &mut entry.kind else {
+        panic!("a planar mirror");
+    };
+    scene.light.position = [0.25, 0.8, 0.4];
+    scene.mirror.center = [0.0, 1.0, 2.5];
+    (scene.mirror.half_width, scene.mirror.half_height) = (5.0, 2.45);
+    entry
+}
+
+#[test]
+fn the_order_of_the_bias_of_progressive_photon_mapping() {
+    let paths = 8_000_000;
+    let entry = low_light();
+    let healthy = study_of(&entry, integrator("ppm").as_ref(), None, paths);
+    println!(
+        "{}: fitted {:.3} {:?}, predicted {:.4}, size {:?}, detectable {:.2}",
+        healthy.view.name,
+        healthy.exponent.fitted,
+        healthy.exponent.interval,
+        healthy.predicted,
+        healthy.scale,
+        healthy.detectable
+    );
+    assert_eq!(healthy.state, State::Consistent, "{:?}", healthy.tests);
+    assert!(
+        healthy
+            .points
+            .iter()
+            .filter(|p| p.variance.is_some())
+            .count()
+            >= 3
+    );
+    let stuck = Changed(integrator("ppm"), Change::NeverBelow(0.4));
+    let stuck = study_of(&entry, &stuck, None, paths);
+    assert_eq!(stuck.state, State::Different);
+    let order = stuck
+        .tests
+        .iter()
+        .find(|t| t.what.starts_with("order"))
+        .unwrap();
+    assert!(order.p < 1e-6, "{order:?}");
 }
 
 fn converge_studies(
@@ -303,7 +362,7 @@ fn power_schedule(first: f64, lambda: f64, iterations: u32) -> Schedule {
 
 #[test]
 fn variance_and_bias_slopes_along_a_schedule() {
-    let sizes = [64, 2048, 256];
+    let sizes = [64, 1024, 160];
     let schedule = Schedule::Progressive {
         first: 0.4,
         reduction: 2.0 / 3.0,
@@ -359,7 +418,7 @@ fn variance_and_bias_slopes_along_a_schedule() {
 #[test]
 fn an_estimator_without_bias_has_slope_minus_one() {
     let schedule = Schedule::Fixed(0.2);
-    let sizes = [32, 16_384, 128];
+    let sizes = [32, 2048, 128];
     for (name, class) in [("lt", PathClass::LSDE), ("pt", PathClass::LDE)] {
         let study = converge_studies(integrator(name).as_ref(), &schedule, None, sizes, class);
         let (slope, predicted) = study.variance.unwrap();
@@ -547,7 +606,7 @@ const BIAS: [&str; 10] = [
     "--class",
     "LSDE",
     "--paths",
-    "1e6",
+    "4e6",
 ];
 const CONVERGE: [&str; 14] = [
     "converge",
@@ -563,7 +622,7 @@ const CONVERGE: [&str; 14] = [
     "--replicates",
     "64",
     "--paths-per-iteration",
-    "512",
+    "8192",
 ];
 
 #[test]

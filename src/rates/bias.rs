@@ -11,7 +11,7 @@ use super::power_law::{Design, Exponent, scale};
 use super::region::{View, interior};
 use super::runs::{AtBandwidths, at_bandwidths};
 use super::variance::{VarianceTest, variance_test};
-use crate::integrators::{Integrator, Treatment};
+use crate::integrators::{Integrator, Plan, Treatment};
 use crate::judge::distributions::{student_quantile, student_survival};
 use crate::judge::evidence::moments;
 use crate::verify::replicates::Seeds;
@@ -165,6 +165,24 @@ pub(super) fn chosen(
     })
 }
 
+/// Refuses what does not fit before anything is run.
+pub(super) fn check_options(
+    plan: &Plan,
+    technique: Option<Technique>,
+    kernel: Option<Kernel>,
+    bandwidths: &[f64],
+) -> Result<(), InvalidParameter> {
+    for planned in plan {
+        if let Treatment::Regularized(t) = planned.treatment
+            && let Some(t) = chosen(mollified(t), technique)?
+        {
+            let kernel = kernel.unwrap_or(t.default_kernel());
+            nephroid_analytic::bandwidth::check(t, kernel, bandwidths)?;
+        }
+    }
+    Ok(())
+}
+
 /// Studies each class that is regularized.
 ///
 /// # Errors
@@ -172,6 +190,7 @@ pub(super) fn chosen(
 pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidParameter> {
     let (mut studies, mut skipped) = (Vec::new(), Vec::new());
     let plan = request.integrator.plan(request.entry);
+    check_options(&plan, request.technique, request.kernel, request.bandwidths)?;
     for (layer, planned) in plan.iter().enumerate() {
         let class = planned.class;
         if request.class.is_some_and(|c| c != class) {
@@ -385,7 +404,11 @@ fn judge(
     } else {
         Exponent::UNKNOWN
     };
-    let predicted = design.exponent_of(&predicted_bias);
+    let predicted = if is_fitted {
+        design.exponent_of(&predicted_bias)
+    } else {
+        f64::NAN
+    };
     let (factor, factor_error) = scale(&weights, &predicted_bias, &biases);
 
     let mut tests = Vec::new();

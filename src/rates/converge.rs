@@ -14,7 +14,7 @@ use nephroid_analytic::bandwidth::{Bounded, Kernel, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 
-use super::bias::{CONFIDENCE, Skipped, chosen};
+use super::bias::{CONFIDENCE, Skipped, check_options, chosen};
 use super::counts::{none_of, p_bound};
 use super::expected::{Expected, expected, mollified, sharp, unknown};
 use super::outcome::{State, Test, state};
@@ -30,7 +30,7 @@ use crate::verify::replicates::Seeds;
 /// The variance's slope is decided if its interval is not wider than this on either side.
 pub const VARIANCE_HALF_WIDTH: f64 = 0.05;
 /// The same for the slope of the squared bias.
-pub const BIAS_HALF_WIDTH: f64 = 0.3;
+pub const BIAS_HALF_WIDTH: f64 = 0.15;
 /// Iterations unless asked otherwise.
 pub const ITERATIONS: u32 = 256;
 /// Replicates unless asked otherwise: a variance to 6 %.
@@ -162,8 +162,8 @@ pub struct Study {
 /// Paths of an iteration that take about as long with each technique.
 const fn default_paths(technique: Option<Technique>) -> u64 {
     match technique {
-        Some(Technique::Merge) => 512,
-        _ => 4096,
+        Some(Technique::Merge) | None => 512,
+        Some(_) => 1024,
     }
 }
 
@@ -174,6 +174,8 @@ const fn default_paths(technique: Option<Technique>) -> u64 {
 pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidParameter> {
     let (mut studies, mut skipped) = (Vec::new(), Vec::new());
     let plan = request.integrator.plan(request.entry);
+    let named = request.schedule.values();
+    check_options(&plan, request.technique, request.kernel, named)?;
     for (layer, planned) in plan.iter().enumerate() {
         let class = planned.class;
         if request.class.is_some_and(|c| c != class) {
