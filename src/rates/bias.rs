@@ -6,12 +6,13 @@ use nephroid_analytic::scene::{Entry, InvalidParameter};
 
 use super::allocation::shares;
 use super::expected::{Expected, expected, mollified, sharp, unknown};
+use super::options::{Skipped, check_options, chosen};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent, scale};
 use super::region::{View, interior};
 use super::runs::{AtBandwidths, at_bandwidths};
 use super::variance::{VarianceTest, variance_test};
-use crate::integrators::{Integrator, Plan, Treatment};
+use crate::integrators::{Integrator, Treatment};
 use crate::judge::distributions::{student_quantile, student_survival};
 use crate::judge::evidence::moments;
 use crate::verify::replicates::Seeds;
@@ -121,66 +122,12 @@ pub struct Study {
     pub seconds: f64,
 }
 
-/// A class that is not measured, and why.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Skipped {
-    /// The class.
-    pub class: PathClass,
-    /// Why.
-    pub reason: String,
-}
-
 /// Paths that take about as long with each technique: some seconds of two cores.
 const fn default_paths(technique: Technique) -> u64 {
     match technique {
         Technique::Merge => 40_000_000,
         _ => 250_000_000,
     }
-}
-
-/// The technique of the prediction: the one asked for, if its bandwidth is of the same kind as that of the integrator's.
-pub(super) fn chosen(
-    planned: Option<Technique>,
-    asked: Option<Technique>,
-) -> Result<Option<Technique>, InvalidParameter> {
-    let (Some(planned), Some(asked)) = (planned, asked) else {
-        return Ok(planned);
-    };
-    let fits = |t: &Technique| t.bandwidth_is_angle() == planned.bandwidth_is_angle();
-    if fits(&asked) {
-        return Ok(Some(asked));
-    }
-    let names: Vec<_> = Technique::ALL
-        .into_iter()
-        .filter(fits)
-        .map(Technique::name)
-        .collect();
-    Err(InvalidParameter {
-        key: "technique".to_owned(),
-        found: asked.to_string(),
-        allowed: format!(
-            "{} (the integrator's bandwidth is of that kind)",
-            names.join(", ")
-        ),
-    })
-}
-
-/// Refuses what does not fit before anything is run.
-pub(super) fn check_options(
-    plan: &Plan,
-    technique: Option<Technique>,
-    kernel: Option<Kernel>,
-    bandwidths: &[f64],
-) -> Result<(), InvalidParameter> {
-    for planned in plan {
-        if let Treatment::Regularized(t) = planned.treatment
-            && let Some(t) = chosen(mollified(t), technique)?
-        {
-            let kernel = kernel.unwrap_or(t.default_kernel());
-            nephroid_analytic::bandwidth::check(t, kernel, bandwidths)?;
-        }
-    }
-    Ok(())
 }
 
 /// Studies each class that is regularized.

@@ -4,7 +4,8 @@ use core::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::bias::{CONFIDENCE, FEWEST_CONTRIBUTIONS, Skipped, Study};
+use super::bias::{CONFIDENCE, FEWEST_CONTRIBUTIONS, Study};
+use super::options::Skipped;
 
 /// Numbers that JSON cannot hold become null.
 pub(super) fn number(v: f64) -> Value {

@@ -14,9 +14,12 @@ use nephroid_analytic::bandwidth::{Bounded, Kernel, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 
-use super::bias::{CONFIDENCE, Skipped, check_options, chosen};
-use super::counts::{none_of, p_bound};
-use super::expected::{Expected, expected, mollified, sharp, unknown};
+use super::bias::CONFIDENCE;
+pub use super::events::Events;
+use super::events::{count_tests, events};
+use super::expected::{mollified, sharp, unknown};
+use super::law::{Law, bandwidths, kernel_of};
+use super::options::{Skipped, check_options, chosen};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent};
 use super::region::{View, interior};
@@ -37,11 +40,6 @@ pub const ITERATIONS: u32 = 256;
 pub const REPLICATES: u32 = 512;
 /// A variance enters the fit if its relative standard error, kurtosis included, is at most this.
 const ROUGHEST_VARIANCE: f64 = 0.3;
-/// Probabilities of a hit are interpolated and averaged over a close-up to better than this.
-const KNOWN_TO: f64 = 1e-3;
-/// A mean over all replicates is taken as normal if it consists of at least so many contributions: its skewness is then below 0.023,
-/// and a tail of 1e-7 wrong by less than a factor of two.
-const FEWEST_CONTRIBUTIONS: f64 = 2000.0;
 /// A bias enters the fit if it is known to this part of itself.
 const KNOWN_BIAS: f64 = 0.05;
 
@@ -108,22 +106,6 @@ pub struct Point {
     pub events: Option<Events>,
     /// The median of the running means over the sharp truth.
     pub median: f64,
-}
-
-/// Contributions that are not zero (of paths; for merging: iterations that found a photon) since the n before, in all replicates,
-/// and replicates that had none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Events {
-    /// Number of events.
-    pub count: u64,
-    /// Its expectation.
-    pub expected: f64,
-    /// How far it may be off, relative to it, where the region is not quite a point.
-    pub known_to: f64,
-    /// Replicates without any.
-    pub empty: u64,
-    /// Their expected number.
-    pub expected_empty: f64,
 }
 
 /// A class and what came of it.
@@ -218,14 +200,6 @@ pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidPar
     Ok((studies, skipped))
 }
 
-fn kernel_of(request: &Request, technique: Technique) -> Kernel {
-    request.kernel.unwrap_or(technique.default_kernel())
-}
-
-fn bandwidths(schedule: &Schedule, iterations: u32) -> Vec<f64> {
-    (0..iterations).map(|i| schedule.bandwidth(i)).collect()
-}
-
 fn view(
     request: &Request,
     class: PathClass,
@@ -260,84 +234,6 @@ fn view(
         kernel_of(request, technique),
         &ends,
     )
-}
-
-/// What is exactly known of the running means.
-struct Law {
-    /// Per iteration; empty for a class without bias.
-    iterations: Vec<Expected>,
-    means: Vec<Bounded>,
-    /// `None` if there is no exact second moment.
-    variances: Option<Vec<f64>>,
-    /// Relative standard errors of the variances of so many replicates.
-    variance_errors: Option<Vec<f64>>,
-    /// Contributions of which the mean over all replicates consists, in effect.
-    contributions: Option<Vec<f64>>,
-}
-
-impl Law {
-    fn is_normal(&self, k: usize) -> bool {
-        let is_enough = |c: &Vec<f64>| c[k] >= FEWEST_CONTRIBUTIONS;
-        self.contributions.as_ref().is_none_or(is_enough)
-    }
-
-    fn new(
-        request: &Request,
-        class: PathClass,
-        technique: Option<Technique>,
-        view: &View,
-        sharp: Bounded,
-        paths: u64,
-    ) -> Result<Self, InvalidParameter> {
-        let ns = || {
-            (0..request.iterations)
-                .map(|i| i + 1)
-                .filter(|n| n.is_power_of_two())
-        };
-        let Some(technique) = technique else {
-            return Ok(Law {
-                iterations: Vec::new(),
-                means: ns().map(|_| sharp).collect(),
-                variances: None,
-                variance_errors: None,
-                contributions: None,
-            });
-        };
-        let schedule = request.predicted_schedule.unwrap_or(request.schedule);
-        let schedule = bandwidths(schedule, request.iterations);
-        let kernel = kernel_of(request, technique);
-        let iterations = expected(view, class, technique, kernel, &schedule)?;
-        let (mut means, mut variances, mut errors) = (Vec::new(), Vec::new(), Vec::new());
-        let mut contributions = Vec::new();
-        let (mut sum, mut squares, mut fourths) = (Bounded::default(), 0.0, 0.0);
-        for (n, e) in (1_u32..).zip(&iterations) {
-            let variance = e.variance() / paths as f64;
-            sum.value += e.mean.value;
-            sum.error += e.mean.error;
-            squares += variance;
-            // The fourth cumulant of rare equal samples is their variance squared over their number.
-            fourths += variance * variance / (e.effective_hit() * paths as f64);
-            if n.is_power_of_two() {
-                let n = f64::from(n);
-                means.push(Bounded {
-                    value: sum.value / n,
-                    error: sum.error / n,
-                });
-                variances.push(squares / (n * n));
-                let kurtosis = fourths / (squares * squares);
-                errors.push(f64::sqrt((2.0 + kurtosis) / f64::from(request.replicates)));
-                contributions.push(f64::from(request.replicates) / kurtosis);
-            }
-        }
-        let is_known = technique != Technique::Merge || view.is_close_up;
-        Ok(Law {
-            iterations,
-            means,
-            variances: is_known.then_some(variances),
-            variance_errors: Some(errors),
-            contributions: Some(contributions),
-        })
-    }
 }
 
 fn of_class(
@@ -524,86 +420,6 @@ fn bias_exponent(
     let exponent = design.fit(&biases, 1.0 - CONFIDENCE);
     let p = design.p_value(&exact, &errors, &biases);
     (exponent, design.exponent_of(&exact), Some(p))
-}
-
-/// Events since the n before, where the probabilities of a hit are known.
-fn events(law: &Law, rows: &[Along], paths: u64, merges: bool) -> Option<Vec<Events>> {
-    let hits: Vec<f64> = law
-        .iterations
-        .iter()
-        .map(|e| e.hit)
-        .collect::<Option<_>>()?;
-    let replicates = rows.len() as f64;
-    let (mut result, mut expected, mut empty) = (Vec::new(), 0.0, 1.0);
-    let mut known_to = KNOWN_TO;
-    for ((n, &p), e) in (1_usize..).zip(&hits).zip(&law.iterations) {
-        known_to = f64::max(known_to, e.excess);
-        let nothing = none_of(p, paths as f64);
-        expected += if merges {
-            1.0 - nothing
-        } else {
-            p * paths as f64
-        };
-        empty *= nothing;
-        if n.is_power_of_two() {
-            let k = result.len();
-            let of = |r: &Along| {
-                if merges {
-                    r.alive[k]
-                } else {
-                    r.contributions[k]
-                }
-            };
-            result.push(Events {
-                count: rows.iter().map(of).sum(),
-                expected: replicates * expected,
-                known_to,
-                empty: rows.iter().filter(|r| of(r) == 0).count() as u64,
-                expected_empty: replicates * empty,
-            });
-            (expected, empty, known_to) = (0.0, 1.0, KNOWN_TO);
-        }
-    }
-    (!result.is_empty()).then_some(result)
-}
-
-fn count_tests(request: &Request, points: &[Point], paths: u64, merges: bool) -> Vec<Test> {
-    let mut tests = Vec::new();
-    let mut before = 0;
-    for p in points {
-        let iterations = f64::from(p.iterations - before);
-        before = p.iterations;
-        let Some(events) = p.events else {
-            continue;
-        };
-        let replicates = f64::from(request.replicates);
-        let trials = replicates * iterations * if merges { 1.0 } else { paths as f64 };
-        tests.push(Test {
-            what: format!(
-                "number of contributions that are not zero up to iteration {}",
-                p.iterations
-            ),
-            p: p_bound(
-                events.count,
-                trials,
-                events.expected,
-                KNOWN_TO * events.expected,
-            ),
-        });
-        tests.push(Test {
-            what: format!(
-                "replicates to which the iterations up to {} add nothing",
-                p.iterations
-            ),
-            p: p_bound(
-                events.empty,
-                replicates,
-                events.expected_empty,
-                KNOWN_TO * replicates,
-            ),
-        });
-    }
-    tests
 }
 
 fn points(

@@ -4,9 +4,10 @@ use core::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::bias::{CONFIDENCE, Skipped};
+use super::bias::CONFIDENCE;
 use super::bias_report::{interval, number, paths, range};
 use super::converge::Study;
+use super::options::Skipped;
 
 /// Paragraphs and a table for each class.
 pub fn converge_table(
