@@ -10,12 +10,15 @@ use std::time::Instant;
 use libm::{cos, hypot, sin};
 use nephroid_analytic::kinds::Estimate;
 use nephroid_analytic::kinds::conic_mirrors::{Ellipsoid, Hyperboloid};
+use nephroid_analytic::kinds::conic_wall::ConicWall;
 use nephroid_analytic::kinds::cylinder_cup::{Beam, CylinderCup, Light, Wall, point_light::Lamp};
 use nephroid_analytic::kinds::diffuse;
 use nephroid_analytic::kinds::flat_interface::FlatInterface;
+use nephroid_analytic::kinds::glass_pillar::GlassPillar;
 use nephroid_analytic::kinds::glass_slab::GlassSlab;
 use nephroid_analytic::kinds::glass_sphere::GlassSphere;
 use nephroid_analytic::kinds::paraboloid::{self, Paraboloid};
+use nephroid_analytic::kinds::pillar::Pillar;
 use nephroid_analytic::kinds::planar_chains::Wedge;
 use nephroid_analytic::kinds::planar_mirror::PlanarMirror;
 use nephroid_analytic::kinds::sphere_mirror::{self, Side, SphereMirror};
@@ -153,6 +156,22 @@ fn rooted() -> Vec<Form> {
         }),
         ..beam
     };
+    let rim = CylinderCup {
+        light: Light::Point(Lamp {
+            x: -0.6,
+            y: 0.8,
+            height: 0.8,
+            intensity: 1.0,
+        }),
+        ..lamp
+    };
+    let deep = CylinderCup {
+        wall: Wall {
+            cos_half_arc: None,
+            ..wall
+        },
+        ..beam
+    };
     let sphere = |side, z: f64| SphereMirror {
         centre: vec3(0.0, 0.0, z),
         radius: 1.0,
@@ -183,6 +202,12 @@ fn rooted() -> Vec<Form> {
         receiver_z: 1.2,
         max_incidence: 1.4,
     };
+    let bow = GlassSphere {
+        index: 1.333,
+        receiver_z: -3.0,
+        max_incidence: core::f64::consts::FRAC_PI_2,
+        ..glass
+    };
     let wave = Wave {
         amplitude: 0.05,
         wave_number: core::f64::consts::TAU,
@@ -210,6 +235,16 @@ fn rooted() -> Vec<Form> {
             Box::new(move |x, y| lamp.caustic(0.6 * x, 0.6 * y, 1)),
         ),
         (
+            "cylinder-cup",
+            "rim lamp, one bounce, all",
+            Box::new(move |x, y| rim.caustic(0.6 * x, 0.6 * y, 1)),
+        ),
+        (
+            "cylinder-cup",
+            "beam, two bounces, all roots",
+            Box::new(move |x, y| deep.caustic(0.6 * x, 0.6 * y, 2)),
+        ),
+        (
             "concave-sphere",
             "Alhazen, all roots",
             Box::new(move |x, y| dome.caustic(vec3(0.2 * x, 0.2 * y, 0.0))),
@@ -229,7 +264,13 @@ fn rooted() -> Vec<Form> {
             "two refractions, all roots",
             Box::new(move |x, y| glass.caustic(0.1 * hypot(x, y), 2)),
         ),
+        (
+            "glass-sphere",
+            "one inside, all roots",
+            Box::new(move |x, y| bow.caustic(5.0 * hypot(x, y), 3)),
+        ),
     ];
+    forms.extend(walls());
     if let Ok(waves) = WaterWaves::new(1.333, 3.0, 1.0, vec![wave]) {
         forms.push((
             "water-waves",
@@ -238,6 +279,77 @@ fn rooted() -> Vec<Form> {
         ));
     }
     forms
+}
+
+/// Vertical walls and pillars.
+fn walls() -> Vec<Form> {
+    let pillar = Pillar {
+        x: 0.1,
+        y: -0.2,
+        radius: 0.35,
+        height: 2.0,
+        reflectance: 0.9,
+        light: vec3(-1.1, 0.4, 1.3),
+        intensity: 5.0,
+    };
+    let wall = |eccentricity, light| ConicWall {
+        x: 0.1,
+        y: -0.2,
+        axis: (0.8, 0.6),
+        parameter: 0.9,
+        eccentricity,
+        half_arc: Some(1.9),
+        height: 0.7,
+        reflectance: 0.9,
+        light,
+        intensity: 5.0,
+    };
+    let ellipse = wall(0.45, vec3(-0.1, 0.05, 1.3));
+    let parabola = wall(1.0, vec3(0.1, -0.2, 1.3));
+    let glass = GlassPillar {
+        x: 0.1,
+        y: -0.2,
+        radius: 0.35,
+        height: 2.0,
+        index: 1.5,
+        irradiance: 2.0,
+        sin_elevation: 0.6,
+        cos_elevation: 0.8,
+    };
+    // Behind the pillar for transmitted light, around it for reflected light.
+    let (near, far) = (0.1, 0.6);
+    vec![
+        (
+            "pillar",
+            "one root",
+            Box::new(move |x, y| pillar.caustic(x, y)),
+        ),
+        (
+            "conic-wall",
+            "ellipse, all roots",
+            Box::new(move |x, y| ellipse.caustic(0.6 * x, 0.6 * y)),
+        ),
+        (
+            "conic-wall",
+            "parabola, light at the focus",
+            Box::new(move |x, y| parabola.caustic(0.6 * x, 0.6 * y)),
+        ),
+        (
+            "glass-pillar",
+            "reflected, one root",
+            Box::new(move |x, y| glass.caustic(x, y, 1)),
+        ),
+        (
+            "glass-pillar",
+            "two refractions, all roots",
+            Box::new(move |x, y| glass.caustic(near + far * (1.5 + x), near + far * y, 2)),
+        ),
+        (
+            "glass-pillar",
+            "one inside, all roots",
+            Box::new(move |x, y| glass.caustic(1.5 * x, 1.5 * y, 3)),
+        ),
+    ]
 }
 
 fn main() {

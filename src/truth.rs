@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use crate::exr_output::{rounded_up, rounding_error};
 use crate::film::compensated_sum;
+use crate::regions::Regions;
 
 /// The default relative tolerance of images.
 pub const DEFAULT_TOLERANCE: f64 = 1e-6;
@@ -39,6 +40,24 @@ impl TruthImage {
                 Bounded {
                     value,
                     error: mean(errors) + 4.0 * f64::EPSILON * value.abs(),
+                }
+            })
+            .collect()
+    }
+
+    /// Mean radiance of a layer over each area.
+    pub fn area_means(&self, layer: usize, regions: &Regions) -> Vec<Bounded> {
+        let sums = |values: &[f64]| regions.reduce(values);
+        let (values, errors) = (sums(&self.layers[layer]), sums(&self.errors[layer]));
+        let areas = values.iter().zip(&errors).zip(regions.pixels());
+        areas
+            .map(|((&(value, _), &(error, _)), pixels)| {
+                let value = value / pixels as f64;
+                // Up to 2¹⁶ additions of a row or a tile, in eight sums.
+                let rounding = 1e4 * f64::EPSILON * value.abs();
+                Bounded {
+                    value,
+                    error: error / pixels as f64 + rounding,
                 }
             })
             .collect()

@@ -129,7 +129,7 @@ fn check(
     let expected = point.irradiance.value;
     // On a shadow edge the bound is as large as the light.
     let uncertain = !(point.irradiance.error <= 1e-6 * expected);
-    if uncertain || point.singularity.is_some_and(close) {
+    if uncertain || truth.singularity(x[0], x[1], c).is_some_and(close) {
         return false;
     }
     let parts: Vec<f64> = bundles.iter().map(|b| irradiance(b.as_ref(), x)).collect();

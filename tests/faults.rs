@@ -9,10 +9,12 @@ use nephroid::entry::from_toml;
 use nephroid::integrators::{Fault, Integrator, Settings, by_name};
 use nephroid::judge::hypotheses::{LEVEL, Levels};
 use nephroid::judge::verdict::State;
+use nephroid::regions::Regions;
 use nephroid::verify::effort::Effort;
-use nephroid::verify::expected::Truths;
+use nephroid::verify::expected::{Expected, Truths};
+use nephroid::verify::gather::gather;
 use nephroid::verify::replicates::{Canvas, Seeds, Shape};
-use nephroid::verify::run::{Request, gather, judge, run};
+use nephroid::verify::run::{Request, run};
 use nephroid::verify::sizing::Demand;
 use nephroid::verify::suite::{Coverage, Subject};
 use nephroid::verify::verdicts::Outcome;
@@ -72,6 +74,8 @@ fn request(integrators: Vec<Box<dyn Integrator>>, seed: u64, margin: f64) -> Req
         margin,
         level: LEVEL,
         checks: None,
+        most_paths: Effort::Quick.most_paths(),
+        variations: false,
         seed,
         bandwidth: BANDWIDTH,
         kernel: None,
@@ -176,7 +180,7 @@ fn the_kernel_of_the_tangent_plane_is_different_at_half_a_radian() {
     let classes = entry.kind.classes();
     let expected: Vec<_> = classes
         .iter()
-        .map(|&c| (c == PathClass::LSDE).then_some(truth.1.mean))
+        .map(|&c| (c == PathClass::LSDE).then(|| Expected::of_image(truth.1.mean)))
         .collect();
     let demand = Demand {
         margin: 0.015,
@@ -201,9 +205,10 @@ fn the_kernel_of_the_tangent_plane_is_different_at_half_a_radian() {
     ] {
         let prepare = || integrator("pt-reg", fault).prepare(&entry);
         let seeds = Seeds::new(9, "wall", "pt-reg");
-        let evidence = gather(prepare, canvas, shape.clone(), seeds, &expected, demand);
-        let judged = judge(&evidence, &expected, demand);
-        let lsde = judged.iter().find(|j| j.truth.is_some()).unwrap();
+        let regions = Regions::image(canvas.width, canvas.height);
+        let shape = shape.clone();
+        let evidence = gather(prepare, canvas, &regions, shape, seeds, &expected, demand);
+        let lsde = evidence.judged.iter().find(|j| j.truth.is_some()).unwrap();
         assert_eq!(lsde.finding.state, state, "{:?}", lsde.finding);
     }
 }

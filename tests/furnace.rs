@@ -1,5 +1,7 @@
 //! The furnace: the wall's closed form against flux, pixels against ray casting, and the remainder of the series.
 
+mod gauss;
+
 use std::f64::consts::PI;
 
 use nephroid::{entry, truth};
@@ -112,16 +114,11 @@ fn direct_pixels_are_the_means_of_cast_rays() {
         let irradiance = scene.light.intensity * inwards.dot(to_light.normalized()) / squared;
         scene.wall.albedo / PI * irradiance
     };
-    let gauss = [
-        (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-        (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-        (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-        (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-    ];
+    let gauss = gauss::rule(4);
     for (i, j) in [(0, 0), (127, 3), (64, 64), (31, 101), (127, 127)] {
         let mut mean = 0.0;
-        for (s, ws) in gauss {
-            for (t, wt) in gauss {
+        for &(s, ws) in gauss {
+            for &(t, wt) in gauss {
                 mean += ws * wt * radiance(f64::from(i) + s, f64::from(j) + t);
             }
         }

@@ -1,10 +1,14 @@
 //! Films bit by bit: the same on any number of threads, in any build, and at any bandwidth where nothing is regularized.
 
+mod iteration;
+
 use nephroid::entry;
 use nephroid::film::Film;
 use nephroid::integrators::accumulate::accumulate;
-use nephroid::integrators::{Integrator, Kernel, Settings, all, by_name};
+use nephroid::integrators::{Kernel, Settings, all, by_name};
 use nephroid_analytic::scene::Entry;
+
+use iteration::{empty, one_iteration};
 
 /// Scenes of this test alone, so that golden bits do not change with the catalogue's pictures.
 const SCENES: [(&str, &str); 4] = [
@@ -19,22 +23,6 @@ fn load(scene: &str, width: u32, height: u32) -> Entry {
     let mut entry = entry::from_toml(scene, text).unwrap();
     (entry.camera.width, entry.camera.height) = (width, height);
     entry
-}
-
-fn empty(entry: &Entry) -> Film {
-    Film::new(
-        entry.camera.width,
-        entry.camera.height,
-        entry.kind.classes(),
-    )
-}
-
-fn one_iteration(integrator: &dyn Integrator, entry: &Entry, paths: u64, bandwidth: f64) -> Film {
-    let mut film = empty(entry);
-    integrator
-        .prepare(entry)
-        .iterate(7, 3, paths, bandwidth, &mut film);
-    film
 }
 
 /// FNV-1a over the bits of everything in a film.

@@ -1,14 +1,15 @@
 //! What films hold: the planned classes, closed values, nothing that is not finite, and the factor of a deliberate fault.
 
+mod iteration;
+
 use core::f64::consts::PI;
 
 use nephroid::entry;
-use nephroid::film::Film;
-use nephroid::integrators::{
-    Fault, Integrator, Kernel, NAMES, Schedule, Settings, Treatment, all, by_name,
-};
+use nephroid::integrators::{Fault, Kernel, NAMES, Schedule, Settings, Treatment, all, by_name};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{CylinderCupScene, DiffuseScene, Entry, Kind};
+
+use iteration::one_iteration;
 
 const SCENES: [&str; 4] = ["floor", "mirror-wall", "cup", "pool"];
 const CAUSTIC: [PathClass; 2] = [PathClass::LSDE, PathClass::LSDSE];
@@ -17,22 +18,6 @@ fn load(scene: &str, width: u32, height: u32) -> Entry {
     let mut entry = entry::load(scene).unwrap();
     (entry.camera.width, entry.camera.height) = (width, height);
     entry
-}
-
-fn empty(entry: &Entry) -> Film {
-    Film::new(
-        entry.camera.width,
-        entry.camera.height,
-        entry.kind.classes(),
-    )
-}
-
-fn one_iteration(integrator: &dyn Integrator, entry: &Entry, paths: u64, bandwidth: f64) -> Film {
-    let mut film = empty(entry);
-    integrator
-        .prepare(entry)
-        .iterate(7, 3, paths, bandwidth, &mut film);
-    film
 }
 
 #[test]

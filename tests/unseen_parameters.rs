@@ -42,7 +42,7 @@ fn decimal(value: &Value) -> f64 {
 }
 
 /// Restores what ties parameters to each other.
-fn tie(parameters: &mut Value) {
+fn tie(old: &Value, parameters: &mut Value) {
     let p = parameters.as_object_mut().expect("an object");
     let text = |x: f64| json!(format!("{x:.17}"));
     if p.contains_key("sin_elevation") {
@@ -53,6 +53,15 @@ fn tie(parameters: &mut Value) {
     }
     if p.contains_key("light_polar") {
         p.remove("light");
+    }
+    if p.contains_key("half_arc") {
+        if let (Some(focus), Some(light)) = (old.get("focus"), old.get("light")) {
+            // A light at the focus stays there.
+            if focus[0] == light[0] && focus[1] == light[1] {
+                let z = p["light"][2].clone();
+                p.insert("light".into(), json!([p["focus"][0], p["focus"][1], z]));
+            }
+        }
     }
     let focus = if p.contains_key("f") && p.contains_key("light") {
         Some(decimal(&p["f"]))
@@ -71,6 +80,9 @@ fn tie(parameters: &mut Value) {
 /// The height of the receiver of a configuration with these parameters.
 fn receiver_z(p: &Value) -> f64 {
     let of = |key: &str| p.get(key).map(decimal);
+    if p.get("half_arc").is_some() {
+        return 0.0;
+    }
     if p.get("A").is_none() && p.get("e").is_some() {
         return decimal(&p["a"]) * decimal(&p["e"]) + decimal(&p["delta"]);
     }
@@ -81,6 +93,15 @@ fn receiver_z(p: &Value) -> f64 {
         .unwrap_or(0.0)
 }
 
+/// Whether the light is so close to the side of a pillar that a variation could put it inside.
+fn next_to_side(p: &Value) -> bool {
+    let (Some(center), Some(light)) = (p.get("center"), p.get("light")) else {
+        return false;
+    };
+    let [dx, dy] = [0, 1].map(|k| decimal(&light[k]) - decimal(&center[k]));
+    libm::hypot(dx, dy) < 1.1 * decimal(&p["a"])
+}
+
 /// A variation of a table: other parameters, points and cameras, and no expected values.
 fn variation(name: &str, spread: &mut Spread) -> Value {
     let mut file = table(name);
@@ -89,15 +110,19 @@ fn variation(name: &str, spread: &mut Spread) -> Value {
         .expect("configurations")
     {
         let old = c["parameters"].clone();
+        let next_to_side = next_to_side(&old);
         for (key, value) in c["parameters"].as_object_mut().expect("an object") {
             // A light on the wall stays there, a whole sphere whole, a focused beam's receiver inside its annulus.
-            let fixed = key == "cap_cos_min" && decimal(value) == -1.0
+            // A parabola stays one.
+            let fixed = key == "e" && decimal(value) == 1.0
+                || next_to_side && ["a", "center", "light"].contains(&key.as_str())
+                || key == "cap_cos_min" && decimal(value) == -1.0
                 || old["light"][0] == "-1.0000000000000000000" && (key == "light" || key == "a");
             if !fixed {
                 vary(value, spread);
             }
         }
-        tie(&mut c["parameters"]);
+        tie(&old, &mut c["parameters"]);
         let plane = format!("{:.17}", receiver_z(&c["parameters"]));
         let line = c["parameters"].get("x_line").cloned();
         for list in ["points", "views"] {

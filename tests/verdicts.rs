@@ -8,9 +8,10 @@ use nephroid::exit;
 use nephroid::judge::evidence::{Invalid, Sample};
 use nephroid::judge::hypotheses::{Levels, difference_p, equivalence_p};
 use nephroid::judge::power::replicates_needed;
-use nephroid::judge::verdict::{State, decide, exit_code};
+use nephroid::judge::spending::looks;
+use nephroid::judge::verdict::{Case, Spent, State, decide, decide_at, exit_code};
 use nephroid_analytic::camera::Bounded;
-use synthetic::{Random, normal_sample, sample, spiky_sample};
+use synthetic::{Random, normal_sample, of_values, sample, spiky_sample};
 
 const ONE: Bounded = Bounded {
     value: 1.0,
@@ -76,6 +77,38 @@ fn false_alarms_are_as_rare_as_stated() {
     }
 }
 
+/// Judged at every look of a growing sample, with its share of the level: a false alarm at any look is still as rare as the level
+/// says. At most 200 of 20000 runs at level 0.01 (290 with probability below 1e-9); that some looks are wasted for a union bound
+/// leaves more than 40.
+#[test]
+fn looking_often_does_not_raise_false_alarms() {
+    let mut random = Random::new(18);
+    let schedule = looks(128, 512);
+    let levels = Levels {
+        different: 0.01,
+        equivalent: 1e-9,
+    };
+    let wrong = (0..20_000)
+        .filter(|_| {
+            let values: Vec<f64> = (0..512).map(|_| 1.0 + 0.1 * random.normal()).collect();
+            let mut spent = Spent::default();
+            schedule.iter().any(|look| {
+                let case = Case {
+                    sample: of_values(&values[..look.replicates as usize]),
+                    truth: ONE,
+                    weight: 1.0,
+                    most: 512,
+                    dependence: None,
+                    too_bright: None,
+                    parts: Vec::new(),
+                };
+                decide_at(&case, 0.001, levels, look.share, &mut spent).bias_established
+            })
+        })
+        .count();
+    assert!((40..290).contains(&wrong), "{wrong}");
+}
+
 /// A bias of exactly the margin is called equivalent with probability at most the level, and close to it where the other side of
 /// the margin is out of sight: 200 of 20000 expected, outside 120 to 290 with probability below 1e-6.
 #[test]
@@ -112,8 +145,8 @@ fn the_bound_of_the_truth_counts_against_equivalence() {
     assert!(passed < 290, "{passed}");
 }
 
-/// Sample sizes are planned for power 0.99 of "different" at the margin and 0.9999 of "equivalent" at no bias. Below 0.975 and
-/// 0.997 in 2000 runs with probability under 1e-6.
+/// Sample sizes are planned for power 0.9 of "different" at the margin and of "equivalent" at no bias. Below 0.86 in 2000 runs
+/// with probability under 1e-6.
 #[test]
 fn planned_sample_sizes_have_the_power_they_were_planned_for() {
     let levels = Levels::shared(1e-6, 1e-3, 33);
@@ -128,9 +161,9 @@ fn planned_sample_sizes_have_the_power_they_were_planned_for() {
             };
             (0..2_000).filter(is).count()
         };
-        assert!(count(1.0, State::Equivalent) > 1_994);
-        assert!(count(1.0 + margin, State::Different) > 1_950);
-        assert!(count(1.0 - margin, State::Different) > 1_950);
+        assert!(count(1.0, State::Equivalent) > 1_720);
+        assert!(count(1.0 + margin, State::Different) > 1_720);
+        assert!(count(1.0 - margin, State::Different) > 1_720);
     }
 }
 
@@ -142,7 +175,7 @@ fn the_minimum_detectable_bias_is_detected_nine_times_of_ten() {
         equivalent: 1e-5,
     };
     let mut random = Random::new(17);
-    for replicates in [32, 50, 400] {
+    for replicates in [256, 400, 1000] {
         let f = decide(&sample(1.0, 0.05, replicates), ONE, 0.02, levels);
         let bias = f.minimum_detectable_bias.unwrap();
         let found = |_: &usize| {

@@ -1,38 +1,34 @@
 //! Pixels of the entries with vertical walls, by conservation of flux along rays, against the mean of the irradiance at
 //! points, which finds the rays by roots: no code in common but the camera.
 
+mod gauss;
+
 use nephroid::{entry, truth};
 use nephroid_analytic::camera::Film;
 use nephroid_analytic::entries::{FloorTruth, PointTruth};
 
-/// Nodes and weights of Gauss's rule with 6 points on [0, 1] (Abramowitz & Stegun, table 25.4).
-const RULE: [(f64, f64); 6] = [
-    (0.033_765_242_898_423_98, 0.085_662_246_189_585_18),
-    (0.169_395_306_766_867_75, 0.180_380_786_524_069_3),
-    (0.380_690_406_958_401_56, 0.233_956_967_286_345_53),
-    (0.619_309_593_041_598_4, 0.233_956_967_286_345_53),
-    (0.830_604_693_233_132_3, 0.180_380_786_524_069_3),
-    (0.966_234_757_101_576, 0.085_662_246_189_585_18),
-];
+/// A floor point with its light.
+type Seen = ([f64; 2], Vec<PointTruth>);
 
 /// The light at the floor point seen at a film point; nothing beside the floor.
-fn seen(film: &Film, truth: &FloorTruth, u: f64, v: f64) -> Option<Vec<PointTruth>> {
+fn seen(film: &Film, truth: &FloorTruth, u: f64, v: f64) -> Option<Seen> {
     let d = film.direction(u, v);
     let t = film.position.z / -d.z;
     let (x, y) = (film.position.x + d.x * t, film.position.y + d.y * t);
-    truth.is_on_floor(x, y).then(|| truth.at(x, y))
+    truth.is_on_floor(x, y).then(|| ([x, y], truth.at(x, y)))
 }
 
 /// Whether a class is smooth over a pixel: as many rays arrive at all points of a fine grid, its border included, and its
 /// caustic is far: from 1.5 pixels on, the rule's error next to a square root is below 1e-9.
-fn smooth(grid: &[Vec<PointTruth>], class: usize, pixel: f64) -> bool {
-    let roots = grid[0][class].irradiance.roots;
-    grid.iter().all(|p| {
-        let far = p[class]
-            .singularity
-            .is_none_or(|s| s.distance > 1.5 * pixel);
-        p[class].irradiance.roots == roots && far
-    })
+fn smooth(truth: &FloorTruth, grid: &[Seen], class: usize, pixel: f64) -> bool {
+    let roots = grid[0].1[class].irradiance.roots;
+    let far = |[x, y]: [f64; 2]| {
+        truth
+            .singularity(x, y, class)
+            .is_none_or(|s| s.distance > 1.5 * pixel)
+    };
+    grid.iter()
+        .all(|(at, p)| p[class].irradiance.roots == roots && far(*at))
 }
 
 /// One pixel in 5 × 4 of each picture. A lost or doubled ray, a wrong area element or a wrong weight would show at 1e-6.
@@ -63,15 +59,15 @@ fn smooth_pixels_are_means_of_point_values() {
                 .collect();
             let Some(grid) = grid else { continue };
             let mut mean = vec![0.0; image.classes.len()];
-            for (s, p) in RULE {
-                for (t, q) in RULE {
-                    for (mean, point) in mean.iter_mut().zip(at(s, t).unwrap()) {
+            for &(s, p) in gauss::rule(6) {
+                for &(t, q) in gauss::rule(6) {
+                    for (mean, point) in mean.iter_mut().zip(at(s, t).unwrap().1) {
                         *mean += p * q * point.irradiance.value;
                     }
                 }
             }
             for (c, class) in image.classes.iter().enumerate() {
-                if !smooth(&grid, c, pixel) {
+                if !smooth(&floor, &grid, c, pixel) {
                     continue;
                 }
                 let expected = mean[c] * floor.albedo() / std::f64::consts::PI;

@@ -215,6 +215,11 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
         self.chain(self.value.cos(), -self.value.sin())
     }
     #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = self.value.sin_cos();
+        (self.chain(sine, cosine), self.chain(cosine, -sine))
+    }
+    #[inline(always)]
     fn tan(self) -> Self {
         let tangent = self.value.tan();
         self.chain(tangent, S::ONE + tangent.squared())

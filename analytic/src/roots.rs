@@ -66,6 +66,72 @@ pub fn bracketed_from<S: Scalar>(
     x
 }
 
+/// A function at a point, for [`resolved`].
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<S> {
+    /// Value.
+    pub value: S,
+    /// First derivative.
+    pub slope: S,
+    /// What rounding can add to the value.
+    pub noise: S,
+}
+
+/// As [`bracketed_from`], for a function that knows its rounding: a value within it is followed by one last step.
+///
+/// Where rounding is all that a value holds, further steps do not shrink, and the bracket would be halved to the last bit.
+///
+/// **Accuracy**: the rounding of the last value over the slope; Newton's error from a point within `noise` of the zero is
+/// below that except where two zeros cannot be told apart.
+#[inline]
+pub fn resolved<S: Scalar>(
+    f: impl Fn(S) -> Sample<S>,
+    low: S,
+    high: S,
+    start: S,
+    rising: bool,
+) -> S {
+    let (mut below, mut above) = (low, high);
+    let mut x = start;
+    let mut last = (high - low).abs();
+    let floor = S::EPSILON.squared() * last;
+    for _ in 0..128 {
+        let Sample {
+            value,
+            slope,
+            noise,
+        } = f(x);
+        let newton = x - value / slope;
+        if value.abs() <= noise {
+            let within = (newton - low) * (newton - high) <= S::ZERO;
+            return if within { newton } else { x };
+        }
+        if (value < S::ZERO) == rising {
+            below = x;
+        } else {
+            above = x;
+        }
+        let inside = (newton - below) * (newton - above) < S::ZERO;
+        let step = (newton - x).abs();
+        let next = if inside && step <= S::HALF * last {
+            last = step;
+            newton
+        } else {
+            let middle = S::HALF * (below + above);
+            last = (middle - x).abs();
+            middle
+        };
+        if (next - x).abs() <= S::EPSILON * S::HALF * next.abs() + floor
+            || next == below
+            || next == above
+        {
+            return next;
+        }
+        x = next;
+    }
+    x
+}
+
 /// What [`for_each_root`] must know of a function on [centre - half, centre + half].
 #[derive(Clone, Copy, Debug)]
 pub struct Local<S> {
@@ -96,48 +162,73 @@ const DEPTH: usize = 64;
 /// On a piece of half width h about m with |f''| ≤ B: there is no zero if |f(m)| > |f'(m)| h + B h²/2, and f is monotone
 /// if |f'(m)| > B h. A piece of which neither holds is halved, down to √ε times the interval; what is still undecided
 /// there is a sign change (visited as simple) or touches zero to within rounding.
+#[inline]
 pub fn for_each_root<S: Scalar>(
     low: S,
     high: S,
     local: impl Fn(S, S) -> Local<S>,
+    visit: impl FnMut(Isolated<S>),
+) {
+    let at = |x: S| {
+        let f = local(x, S::ZERO);
+        Sample {
+            value: f.value,
+            slope: f.slope,
+            noise: f.noise,
+        }
+    };
+    for_each_root_of(low, high, at, &local, visit);
+}
+
+/// As [`for_each_root`], where the function alone, `at`, costs less than with the bound of its second derivative.
+#[inline]
+pub fn for_each_root_of<S: Scalar>(
+    low: S,
+    high: S,
+    at: impl Fn(S) -> Sample<S>,
+    local: impl Fn(S, S) -> Local<S>,
     mut visit: impl FnMut(Isolated<S>),
 ) {
     let narrowest = S::EPSILON.sqrt() * (high - low).abs();
-    let value = |x: S| local(x, S::ZERO).value;
-    let mut stack = [(low, high, S::ZERO, S::ZERO); DEPTH];
-    stack[0] = (low, high, value(low), value(high));
+    // The right ends of the pieces that are left, the next one last, and the left end of the next.
+    let mut ends = [(S::ZERO, S::ZERO); DEPTH];
+    ends[0] = (high, at(high).value);
+    let (mut a, mut at_a) = (low, at(low).value);
     let mut size = 1;
     while size > 0 {
-        size -= 1;
-        let (a, b, at_a, at_b) = stack[size];
+        let (b, at_b) = ends[size - 1];
         let (middle, half) = (S::HALF * (a + b), S::HALF * (b - a));
         let f = local(middle, half);
         let changes = (at_a <= S::ZERO) != (at_b <= S::ZERO);
         let reach = f.slope.abs() * half + S::HALF * f.curvature * half.squared();
-        if !changes && f.value.abs() > reach + f.noise {
-            continue;
-        }
+        let empty = !changes && f.value.abs() > reach + f.noise;
         let monotone = f.slope.abs() > f.curvature * half;
-        let exhausted = half <= narrowest || size + 2 > DEPTH;
-        if monotone || exhausted {
+        let exhausted = half <= narrowest || size == DEPTH;
+        if empty || monotone || exhausted {
             if changes {
-                let root = bracketed(
-                    |x| {
-                        let f = local(x, S::ZERO);
-                        (f.value, f.slope)
-                    },
-                    a,
-                    b,
-                );
-                visit(Isolated::Simple(root));
+                let rising = at_a <= S::ZERO;
+                // The half with the sign change, from Newton's step off the middle or else from the secant.
+                let (low, high, at_low, at_high) = if (f.value <= S::ZERO) == rising {
+                    (middle, b, f.value, at_b)
+                } else {
+                    (a, middle, at_a, f.value)
+                };
+                let newton = middle - f.value / f.slope;
+                let start = if (newton - low) * (newton - high) < S::ZERO {
+                    newton
+                } else {
+                    low - at_low * ((high - low) / (at_high - at_low))
+                };
+                visit(Isolated::Simple(resolved(&at, low, high, start, rising)));
             } else if !monotone && f.value.abs() <= reach + f.noise {
                 visit(Isolated::Touching(middle));
             }
-            continue;
+            (a, at_a) = (b, at_b);
+            size -= 1;
+        } else {
+            ends[size] = (middle, f.value);
+            size += 1;
         }
-        stack[size] = (middle, b, f.value, at_b);
-        stack[size + 1] = (a, middle, at_a, f.value);
-        size += 2;
     }
 }
 

@@ -59,6 +59,11 @@ pub trait Scalar:
     fn atan(self) -> Self;
     /// Angle of the point (`x`, `self`), in (-π, π].
     fn atan2(self, x: Self) -> Self;
+    /// Sine and cosine of one angle, the same as those of [`Self::sin`] and [`Self::cos`], for less than both.
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        (self.sin(), self.cos())
+    }
     /// `e^self`.
     fn exp(self) -> Self;
     /// `e^self - 1` without cancellation near 0.
@@ -119,12 +124,14 @@ macro_rules! implement_scalar {
             fn atan2(self, x: Self) -> Self { atan2_of(self, x) }
             #[inline(always)]
             fn hypot(self, other: Self) -> Self { hypot_of(self, other) }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) { sin_cos_of(self) }
         }
     };
 }
 
 const _: () = {
-    use libm::{atan2 as atan2_of, hypot as hypot_of};
+    use libm::{atan2 as atan2_of, hypot as hypot_of, sincos as sin_cos_of};
     implement_scalar!(f64, core::f64::consts::PI,
         sin => libm::sin, cos => libm::cos, tan => libm::tan, asin => libm::asin, atan => libm::atan,
         exp => libm::exp, exp_m1 => libm::expm1, ln => libm::log,
@@ -132,9 +139,24 @@ const _: () = {
 };
 
 const _: () = {
-    use libm::{atan2f as atan2_of, hypotf as hypot_of};
+    use libm::{atan2f as atan2_of, hypotf as hypot_of, sincosf as sin_cos_of};
     implement_scalar!(f32, core::f32::consts::PI,
         sin => libm::sinf, cos => libm::cosf, tan => libm::tanf, asin => libm::asinf, atan => libm::atanf,
         exp => libm::expf, exp_m1 => libm::expm1f, ln => libm::logf,
     );
 };
+
+#[cfg(test)]
+mod tests {
+    use super::Scalar;
+
+    #[test]
+    fn sine_and_cosine_together_have_the_bits_of_each() {
+        for k in -4000..=4000_i16 {
+            let x = f64::from(k) * 0.013_7;
+            assert_eq!(Scalar::sin_cos(x), (libm::sin(x), libm::cos(x)), "{x}");
+            let y = f32::from(k) * 0.013_7;
+            assert_eq!(Scalar::sin_cos(y), (libm::sinf(y), libm::cosf(y)), "{y}");
+        }
+    }
+}

@@ -1,49 +1,36 @@
 //! Pixels and film regions at finite bandwidth, against a plain supersampling of a coarse image.
 
+mod mirror_entry;
+
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Expectation, Kernel, PlanarSetting, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{
-    Camera, DiffuseScene, Entry, FlatInterfaceScene, Floor, Kind, PlanarMirrorScene, PointLight,
-    RectangleMirror,
+    DiffuseScene, Entry, FlatInterfaceScene, Floor, Kind, PlanarMirrorScene, RectangleMirror,
 };
 use nephroid_analytic::vector::{Vec3, vec3};
+
+use mirror_entry::mirror_entry;
 
 const PI: f64 = core::f64::consts::PI;
 
 /// A mirror over a small floor, generic constants, the mirror low enough that light lands close to it.
 fn entry(size: u32) -> Entry {
-    Entry {
-        name: "test".into(),
-        title: "test".into(),
-        kind: Kind::PlanarMirror(PlanarMirrorScene {
-            light: PointLight {
-                position: [0.25, 0.1, 1.7],
-                intensity: 2.9,
-            },
-            floor: Floor {
-                center: [0.1, 0.0],
-                half_width: [1.3, 1.6],
-                albedo: 0.6,
-            },
-            mirror: RectangleMirror {
-                center: [0.0, 1.0, 0.55],
-                normal: [0.1, -1.0, 0.0],
-                edge: [1.0, 0.1, 0.0],
-                half_width: 0.75,
-                half_height: 0.4,
-                reflectance: 0.85,
-            },
-        }),
-        camera: Camera {
-            position: [0.2, -2.6, 1.9],
-            look_at: [0.0, 0.5, 0.3],
-            up: [0.0, 0.0, 1.0],
-            field_of_view_degrees: 44.0,
-            width: size,
-            height: size,
-        },
-    }
+    let floor = Floor {
+        center: [0.1, 0.0],
+        half_width: [1.3, 1.6],
+        albedo: 0.6,
+    };
+    let mirror = RectangleMirror {
+        center: [0.0, 1.0, 0.55],
+        normal: [0.1, -1.0, 0.0],
+        edge: [1.0, 0.1, 0.0],
+        half_width: 0.75,
+        half_height: 0.4,
+        reflectance: 0.85,
+    };
+    let camera = ([0.2, -2.6, 1.9], [0.0, 0.5, 0.3], 44.0);
+    mirror_entry([0.25, 0.1, 1.7], 2.9, floor, mirror, camera, size)
 }
 
 /// The floor point that the eye sees through film point (u, v) in [0, 1]², for (direct, mirrored): at most one is there.

@@ -138,7 +138,7 @@ fn a_lamp_next_to_the_wall_and_a_wall_in_the_frame_are_refused() {
 #[test]
 fn the_cardioid_has_its_cusp_opposite_the_lamp() {
     let truth = FloorTruth::new(&lamp(180.0, 0.0, 2.4 * HEIGHT, 60.0)).unwrap();
-    let at = |x: f64, y: f64| truth.at(x, y)[1].singularity.unwrap();
+    let at = |x: f64, y: f64| truth.singularity(x, y, 1).unwrap();
     let cusp = at(RADIUS / 3.0 - 0.01, 0.0);
     assert_eq!(cusp.kind, SingularityKind::Cusp);
     assert!((cusp.distance - 0.01).abs() < 1e-9, "{cusp:?}");
@@ -168,8 +168,8 @@ fn the_sun_makes_a_cusp_for_every_number_of_bounces() {
         // On the side of the cusp where the caustic is not.
         let off = -0.004 * f64::copysign(1.0, x);
         let points = truth.at(x * RADIUS + off, 0.0);
-        let found = points.iter().find(|p| p.class == class).unwrap();
-        let cusp = found.singularity.unwrap();
+        let index = points.iter().position(|p| p.class == class).unwrap();
+        let cusp = truth.singularity(x * RADIUS + off, 0.0, index).unwrap();
         assert_eq!(cusp.kind, SingularityKind::Cusp, "{k}");
         assert!((cusp.distance - 0.004).abs() < 1e-9, "{k} {cusp:?}");
     }

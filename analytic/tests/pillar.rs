@@ -250,3 +250,51 @@ fn single_precision_is_within_its_bound() {
     }
     assert!(checked > 100, "{checked}");
 }
+
+/// Towards the edge of the plan shadow, where the root vanishes: what single precision says, with its bound, contains what
+/// double precision says about the same numbers, on both sides of the edge.
+#[test]
+fn the_bound_holds_across_the_edge_of_the_plan_shadow() {
+    let (ax, ay, radius) = (-3.0_f64, 0.4_f64, 0.5_f64);
+    let far = libm::hypot(ax, ay);
+    let mut dark = 0;
+    for k in 2..36 {
+        for sign in [-1.0, 1.0] {
+            let clearance = sign * libm::ldexp(1.0, -k);
+            // The line from the light that passes the axis at the radius plus the clearance.
+            let turn = libm::asin((radius + clearance) / far);
+            let towards = libm::atan2(-ay, -ax) + turn;
+            let (x, y) = (ax + 4.3 * libm::cos(towards), ay + 4.3 * libm::sin(towards));
+            let numbers = [ax, ay, radius, x, y].map(|v| v as f32);
+            let single = Pillar {
+                x: 0.0_f32,
+                y: 0.0,
+                radius: numbers[2],
+                height: 2.0,
+                reflectance: 0.9,
+                light: vec3(numbers[0], numbers[1], 1.5),
+                intensity: 3.0,
+            };
+            let double = Pillar {
+                x: 0.0,
+                y: 0.0,
+                radius: f64::from(numbers[2]),
+                height: 2.0,
+                reflectance: f64::from(0.9_f32),
+                light: vec3(f64::from(numbers[0]), f64::from(numbers[1]), 1.5),
+                intensity: 3.0,
+            };
+            let a = single.caustic(numbers[3], numbers[4]);
+            let b = double.caustic(f64::from(numbers[3]), f64::from(numbers[4]));
+            let (value, error) = (f64::from(a.value), f64::from(a.error));
+            assert!(
+                (value - b.value).abs() <= error + b.error,
+                "{clearance:e}: {value:e} ± {error:e}, {:e} ± {:e}",
+                b.value,
+                b.error
+            );
+            dark += u32::from(a.value == 0.0 && b.value > 0.0);
+        }
+    }
+    assert!(dark > 0, "the edge was not met");
+}

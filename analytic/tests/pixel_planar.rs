@@ -1,45 +1,31 @@
 //! Pixels of planar scenes against routes that do not clip polygons.
 
+mod mirror_entry;
+
 use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::pixel::planar::{Eye, Light, PlanarView};
 use nephroid_analytic::pixel::polygon::Side;
 use nephroid_analytic::quadrature::gauss_legendre;
-use nephroid_analytic::scene::{
-    Camera, Entry, Floor, Kind, PlanarMirrorScene, PointLight, RectangleMirror,
-};
+use nephroid_analytic::scene::{Entry, Floor, RectangleMirror};
+
+use mirror_entry::mirror_entry;
 
 fn mirror_wall() -> Entry {
-    Entry {
-        name: "mirror-wall".to_owned(),
-        title: String::new(),
-        kind: Kind::PlanarMirror(PlanarMirrorScene {
-            light: PointLight {
-                position: [0.25, 0.0, 2.0],
-                intensity: 1.0,
-            },
-            floor: Floor {
-                center: [0.0, 0.0],
-                half_width: [3.0, 3.0],
-                albedo: 0.5,
-            },
-            mirror: RectangleMirror {
-                center: [0.0, 1.0, 0.625],
-                normal: [0.0, -1.0, 0.0],
-                edge: [1.0, 0.0, 0.0],
-                half_width: 0.75,
-                half_height: 0.5,
-                reflectance: 1.0,
-            },
-        }),
-        camera: Camera {
-            position: [0.0, -3.0, 2.0],
-            look_at: [0.0, 0.6, 0.3],
-            up: [0.0, 0.0, 1.0],
-            field_of_view_degrees: 45.0,
-            width: 128,
-            height: 128,
-        },
-    }
+    let floor = Floor {
+        center: [0.0, 0.0],
+        half_width: [3.0, 3.0],
+        albedo: 0.5,
+    };
+    let mirror = RectangleMirror {
+        center: [0.0, 1.0, 0.625],
+        normal: [0.0, -1.0, 0.0],
+        edge: [1.0, 0.0, 0.0],
+        half_width: 0.75,
+        half_height: 0.5,
+        reflectance: 1.0,
+    };
+    let camera = ([0.0, -3.0, 2.0], [0.0, 0.6, 0.3], 45.0);
+    mirror_entry([0.25, 0.0, 2.0], 1.0, floor, mirror, camera, 128)
 }
 
 /// What a ray of the catalogue's `mirror-wall` sees and which light is there, traced here: radiance of LDE, LSDE, LDSE and

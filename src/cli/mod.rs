@@ -7,6 +7,7 @@ mod explain;
 mod golden;
 mod list;
 mod probe;
+mod probe_certify;
 mod rates;
 mod render;
 mod run;

@@ -10,6 +10,7 @@ use nephroid_analytic::kinds::singularity::Singularity;
 use nephroid_analytic::scene::{InvalidParameter, Kind};
 use serde_json::{Value, json};
 
+use super::probe_certify::{Certifier, Proof};
 use crate::error::Error;
 use crate::{entry, exit};
 
@@ -21,6 +22,9 @@ use crate::{entry, exit};
 ///
 /// With --technique and --bandwidth the caustic class is answered as a regularized estimator of that bandwidth converges
 /// to, together with the second moment of one of its samples, in irradiance.
+///
+/// With --certify an interval that provably contains E, from the decimals in both files, and the number of rays that is
+/// proven; or why there is none.
 #[derive(clap::Args)]
 pub struct Args {
     /// Catalogue name or TOML file.
@@ -38,6 +42,9 @@ pub struct Args {
     /// Kernel: cone, epanechnikov, vmf, disc or biweight (default: cone, or disc for merge).
     #[arg(long, value_name = "K", requires = "technique")]
     kernel: Option<String>,
+    /// Add to every E an interval that provably contains the true one, and the number of rays that is proven.
+    #[arg(long, conflicts_with = "technique")]
+    certify: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -55,6 +62,7 @@ struct Answer {
     strength: Option<f64>,
     state: State,
     second_moment: Option<f64>,
+    proof: Option<Proof>,
 }
 
 /// Runs the command.
@@ -71,11 +79,20 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         });
     };
     let regularized = regularized(args, &entry)?;
+    let certifier = args
+        .certify
+        .then(|| Certifier::new(&args.scene, &entry))
+        .transpose()?;
     let mut answers = vec![];
     for (n, point) in read_points(&file, &text)?.into_iter().enumerate() {
         check_on_floor(&file, &entry, &truth, &point)?;
         let [x, y, _] = point.at;
-        answers.extend(truth.at(x, y).into_iter().enumerate().map(|(k, t)| {
+        let light = truth.at(x, y);
+        let proofs = certifier.as_ref().map(|c| {
+            let classes: Vec<_> = light.iter().map(|t| t.class).collect();
+            c.at(&point.decimals, &classes)
+        });
+        answers.extend(light.into_iter().enumerate().map(|(k, t)| {
             let moments = match &regularized {
                 Some(e) if t.class.is_caustic() => Some(e.at([x, y, 0.0], TOLERANCE)),
                 _ => None,
@@ -88,18 +105,19 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                 radiance: truth.albedo() * irradiance / core::f64::consts::PI,
                 error_bound: moments.map_or(t.irradiance.error, |m| m.mean.error),
                 roots: t.irradiance.roots,
-                singularity: t.singularity,
+                singularity: truth.singularity(x, y, k),
                 strength: truth.strength(x, y, k).map(|s| s.value),
                 // A regularized estimator has an expectation everywhere.
-                state: moments.map_or(t.state(), |_| State::Regular),
+                state: moments.map_or_else(|| truth.state(x, y, k, &t), |_| State::Regular),
                 second_moment: moments.map(|m| m.second_moment.value),
+                proof: proofs.as_ref().and_then(|p| p.get(k).copied()),
             }
         }));
     }
     super::print(&if args.json {
         as_json(&entry.name, args, &answers)
     } else {
-        as_csv(&answers, args.technique.is_some())
+        as_csv(&answers, args)
     });
     Ok(exit::PASS)
 }
@@ -152,6 +170,8 @@ fn regularized(
 struct Point {
     line: usize,
     at: [f64; 3],
+    /// x and y as they are written.
+    decimals: [String; 2],
 }
 
 fn content(file: &str, message: String, help: &str) -> Error {
@@ -200,6 +220,7 @@ fn read_points(file: &str, text: &str) -> Result<Vec<Point>, Error> {
             Ok(Point {
                 line: line_number,
                 at,
+                decimals: [x.to_owned(), y.to_owned()],
             })
         })
         .collect()
@@ -275,6 +296,9 @@ fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
             if args.technique.is_some() {
                 answer["second_moment"] = a.second_moment.map_or(Value::Null, finite);
             }
+            if let Some(proof) = &a.proof {
+                proof.add_to(&mut answer);
+            }
             answer
         })
         .collect();
@@ -288,11 +312,15 @@ fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
     top.to_string()
 }
 
-fn as_csv(answers: &[Answer], regularized: bool) -> String {
+fn as_csv(answers: &[Answer], args: &Args) -> String {
+    let regularized = args.technique.is_some();
     let mut header =
         "id,class,E,L,error_bound,roots,singularity,singularity_type,strength,state".to_owned();
     if regularized {
         header += ",second_moment";
+    }
+    if args.certify {
+        header += Proof::HEADER;
     }
     let mut lines = vec![header];
     lines.extend(answers.iter().map(|a| {
@@ -312,6 +340,9 @@ fn as_csv(answers: &[Answer], regularized: bool) -> String {
         );
         if regularized {
             line += &format!(",{}", optional(a.second_moment));
+        }
+        if let Some(proof) = &a.proof {
+            line += &proof.fields();
         }
         line
     }));

@@ -34,7 +34,10 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         None => None,
         Some(scene) => match kinds.iter().find(|k| *k == scene) {
             Some(kind) => Some((*kind).to_owned()),
-            None => Some(entry::load(scene)?.kind.name().to_owned()),
+            None => {
+                let kind = entry::load(scene)?.kind.name();
+                Some(sweeps::swept_as(kind).to_owned())
+            }
         },
     };
     let rows = study(kind.as_deref());
@@ -62,7 +65,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
 
 fn print_table(rows: &[Row]) {
     super::print(&format!(
-        "{:<21} {:<22} {:<4} {:>8} {:>10} {:>13} {:>14}",
+        "{:<21} {:<25} {:<4} {:>8} {:>10} {:>13} {:>14}",
         "kind", "danger", "", "compared", "error", "conditioning", "excess digits"
     ));
     for row in rows {
@@ -72,7 +75,7 @@ fn print_table(rows: &[Row]) {
             (false, n) => format!("  {n} outside their bound"),
         };
         super::print(&format!(
-            "{:<21} {:<22} {:<4} {:>5}/{:<2} {:>10.1e} {:>13.1e} {:>14.1}{note}",
+            "{:<21} {:<25} {:<4} {:>5}/{:<2} {:>10.1e} {:>13.1e} {:>14.1}{note}",
             row.kind,
             row.danger,
             row.precision.name(),

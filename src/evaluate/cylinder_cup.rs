@@ -151,7 +151,8 @@ fn lamp(p: &Object<'_>, radius: f64) -> Result<Lamp<f64>, Error> {
     })
 }
 
-fn beam(p: &Object<'_>) -> Result<Beam<f64>, Error> {
+/// The beam along +x of the parameters.
+pub(super) fn beam(p: &Object<'_>) -> Result<Beam<f64>, Error> {
     let given = if p.has("light_direction") {
         let d = p.direction("light_direction")?;
         if !(f64::abs(d.y) <= 1e-12 && d.x > 0.0 && d.z < 0.0) {

@@ -22,6 +22,7 @@ pub mod reading;
 pub mod report;
 mod sphere_mirror;
 mod stigmatic_refractors;
+mod vertical_walls;
 mod water_waves;
 
 use nephroid_analytic::kinds::{Estimate, rounding_error};
@@ -85,10 +86,14 @@ fn evaluate_reference(top: &Object<'_>) -> Result<Report, Error> {
         "stigmatic-refractors" => stigmatic_refractors::configuration,
         "glass-sphere" => glass_sphere::configuration,
         "water-waves" => water_waves::configuration,
+        "pillar" => vertical_walls::pillar,
+        "conic-wall" => vertical_walls::conic_wall,
+        "glass-pillar" => vertical_walls::glass_pillar,
         other => {
             let allowed = "diffuse, planar-mirror, cylinder-cup, flat-interface, glass-slab, \
                            concave-sphere, convex-sphere, planar-chains, paraboloid, \
-                           conic-mirrors, stigmatic-refractors, glass-sphere, water-waves";
+                           conic-mirrors, stigmatic-refractors, glass-sphere, water-waves, pillar, conic-wall, \
+                           glass-pillar";
             return Err(top.error("scene", &format!("`{other}`"), allowed));
         }
     };

@@ -1,9 +1,11 @@
 //! Evidence: what is left of a replicate once its film has been reduced to regions.
 //!
-//! A replicate is an independent repetition with its own seed. A region is the whole image of one path class, or of the
-//! sum of several. Only the mean of each replicate enters the tests; their spread is the only variance that is used.
+//! A replicate is an independent repetition with its own seed. A region is an area of the image, of one path class or of
+//! the sum of several. Only the mean of each replicate enters the tests; their spread is the only variance that is used.
 
+use super::tails::Tail;
 use crate::film::{Film, compensated_sum};
+use crate::regions::{Area, Regions};
 
 /// Below this many contributions that are not zero, a replicate's mean is too far from normal.
 pub const FEWEST_CONTRIBUTIONS: u64 = 200;
@@ -48,34 +50,146 @@ impl Invalid {
     }
 }
 
-/// What one replicate says about each path class, in the order of the film's layers.
+/// What one replicate says about each path class in each area of the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replicate {
-    /// Mean radiance over the image [W m⁻² sr⁻¹].
-    pub means: Vec<f64>,
-    /// Contributions that are not zero.
-    pub contributions: Vec<u64>,
-    /// Pixels that cannot be.
+    areas: usize,
+    /// `[layer * areas + area]`: mean radiance over the area [W m⁻² sr⁻¹].
+    means: Vec<f64>,
+    /// Contributions that are not zero, in the same order: exact for the whole image; at least so many in a part of it.
+    contributions: Vec<u64>,
+    /// Pixels that cannot be, per layer.
     pub invalid: Vec<Invalid>,
+    /// The largest pixel of each layer [W m⁻² sr⁻¹].
+    pub largest: Vec<f64>,
 }
 
 impl Replicate {
     /// Reduces a film. A film without paths has means that are not a number, and says so in `invalid` only if a
     /// pixel does.
-    pub fn of_film(film: &Film) -> Self {
-        Replicate {
-            means: film.class_means(),
-            contributions: film.nonzero.clone(),
-            invalid: film
-                .layers
-                .iter()
-                .map(|l| Invalid::of_layer(l, film.width))
-                .collect(),
+    pub fn of_film(film: &Film, regions: &Regions) -> Self {
+        let areas = regions.areas();
+        let pixels = regions.pixels();
+        let paths = film.paths as f64;
+        let mut replicate = Replicate {
+            areas: areas.len(),
+            means: Vec::with_capacity(areas.len() * film.layers.len()),
+            contributions: Vec::with_capacity(areas.len() * film.layers.len()),
+            invalid: Vec::new(),
+            largest: Vec::new(),
+        };
+        for (layer, &nonzero) in film.layers.iter().zip(&film.nonzero) {
+            for (k, (sum, seen)) in regions.reduce(layer).into_iter().enumerate() {
+                replicate.means.push(sum / (paths * pixels[k] as f64));
+                // A film counts contributions per layer; a pixel that is not zero has had one at least.
+                let whole = areas[k] == Area::Image;
+                replicate
+                    .contributions
+                    .push(if whole { nonzero } else { seen });
+            }
+            replicate.invalid.push(Invalid::of_layer(layer, film.width));
+            replicate
+                .largest
+                .push(layer.iter().fold(0.0, |a: f64, &v| a.max(v)) / paths);
+        }
+        replicate
+    }
+
+    /// Mean radiance of a layer over an area [W m⁻² sr⁻¹].
+    pub fn mean(&self, layer: usize, area: usize) -> f64 {
+        self.means[layer * self.areas + area]
+    }
+
+    /// Contributions that are not zero, or a lower bound of their number.
+    pub fn contributions(&self, layer: usize, area: usize) -> u64 {
+        self.contributions[layer * self.areas + area]
+    }
+}
+
+/// What replicates say about one check in one area: a running sample, one replicate after the other in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    count: u64,
+    mean: f64,
+    /// Sums of the second and third powers of what is off the mean.
+    powers: [f64; 2],
+    /// The first and the last value, and the sum of products of neighbours, all from the first value.
+    first: f64,
+    last: f64,
+    neighbours: f64,
+    fewest: u64,
+    contributions: u64,
+    invalid: Invalid,
+    invalid_replicate: usize,
+}
+
+impl Tally {
+    /// Adds the sum of some layers of a replicate in an area.
+    pub fn push(&mut self, replicate: &Replicate, layers: &[usize], area: usize) {
+        let index = self.count as usize;
+        let x: f64 = layers.iter().map(|&l| replicate.mean(l, area)).sum();
+        let contributions = layers
+            .iter()
+            .map(|&l| replicate.contributions(l, area))
+            .sum();
+        for found in layers.iter().map(|&l| replicate.invalid[l]) {
+            if self.invalid.first.is_none() && found.first.is_some() {
+                (self.invalid.first, self.invalid_replicate) = (found.first, index);
+            }
+            self.invalid.not_finite += found.not_finite;
+            self.invalid.negative += found.negative;
+        }
+        if index == 0 {
+            self.first = x;
+        }
+        self.neighbours += (x - self.first) * self.last;
+        self.last = x - self.first;
+        // Updates of central powers [Pébay 2008].
+        let before = self.count as f64;
+        self.count += 1;
+        let n = self.count as f64;
+        let off = x - self.mean;
+        let step = off / n;
+        let term = off * step * before;
+        self.mean += step;
+        self.powers[1] += term * step * (n - 2.0) - 3.0 * step * self.powers[0];
+        self.powers[0] += term;
+        self.fewest = if index == 0 {
+            contributions
+        } else {
+            self.fewest.min(contributions)
+        };
+        self.contributions += contributions;
+    }
+
+    /// Correlation of replicates with their predecessors: zero up to 1/√n if seeds are independent.
+    pub fn correlation(&self) -> f64 {
+        let n = self.count as f64;
+        let off = self.mean - self.first;
+        let covariance =
+            self.neighbours - off * (2.0 * n * off - self.last) + (n - 1.0) * off * off;
+        covariance / self.powers[0]
+    }
+
+    /// The sample so far.
+    pub fn sample(&self) -> Sample {
+        let n = self.count as f64;
+        let variance = self.powers[0] / (n - 1.0);
+        let skewness = self.powers[1] / n / libm::pow(self.powers[0] / n, 1.5);
+        Sample {
+            replicates: self.count as usize,
+            mean: self.mean,
+            variance,
+            skewness: if skewness.is_finite() { skewness } else { 0.0 },
+            fewest_contributions: self.fewest,
+            contributions: self.contributions,
+            invalid: self.invalid,
+            invalid_replicate: self.invalid_replicate,
         }
     }
 }
 
-/// All replicates of one region: the sum of some classes over the image.
+/// All replicates of one region: the sum of some classes over an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Number of replicates.
@@ -84,6 +198,8 @@ pub struct Sample {
     pub mean: f64,
     /// Variance of one replicate, with n - 1 in the denominator.
     pub variance: f64,
+    /// Skewness of one replicate: third central moment over the variance to 3/2.
+    pub skewness: f64,
     /// Contributions that are not zero, in the replicate that has the fewest.
     pub fewest_contributions: u64,
     /// Contributions that are not zero, in all replicates.
@@ -95,35 +211,13 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Gathers the region that is the sum of the classes at the given layer positions.
-    pub fn of_layers(replicates: &[Replicate], layers: &[usize]) -> Self {
-        let means: Vec<f64> = replicates
-            .iter()
-            .map(|r| layers.iter().map(|&l| r.means[l]).sum())
-            .collect();
-        let counts = replicates
-            .iter()
-            .map(|r| layers.iter().map(|&l| r.contributions[l]).sum::<u64>());
-        let (mut invalid, mut invalid_replicate) = (Invalid::default(), 0);
-        for (k, r) in replicates.iter().enumerate() {
-            for found in layers.iter().map(|&l| r.invalid[l]) {
-                if invalid.first.is_none() && found.first.is_some() {
-                    (invalid.first, invalid_replicate) = (found.first, k);
-                }
-                invalid.not_finite += found.not_finite;
-                invalid.negative += found.negative;
-            }
+    /// Gathers the sum of the classes at the given layer positions, in an area.
+    pub fn of_layers(replicates: &[Replicate], layers: &[usize], area: usize) -> Self {
+        let mut tally = Tally::default();
+        for r in replicates {
+            tally.push(r, layers, area);
         }
-        let (mean, variance) = moments(&means);
-        Sample {
-            replicates: replicates.len(),
-            mean,
-            variance,
-            fewest_contributions: counts.clone().min().unwrap_or(0),
-            contributions: counts.sum(),
-            invalid,
-            invalid_replicate,
-        }
+        tally.sample()
     }
 
     /// Standard error of the mean.
@@ -131,9 +225,9 @@ impl Sample {
         libm::sqrt(self.variance / self.replicates as f64)
     }
 
-    /// Degrees of freedom of the t tests.
-    pub fn dof(&self) -> f64 {
-        self.replicates.saturating_sub(1) as f64
+    /// The law of the Studentised mean, towards large means if `above`.
+    pub fn tail(&self, above: bool) -> Tail {
+        Tail::new(self.replicates, self.skewness, above)
     }
 }
 
@@ -163,13 +257,44 @@ mod tests {
         film
     }
 
+    fn all() -> Regions {
+        Regions::image(2, 2)
+    }
+
+    #[test]
+    fn running_moments_are_those_of_two_passes() {
+        let values: Vec<f64> = (0..100).map(|i| 1e6 + f64::from(i * i % 37)).collect();
+        let mut tally = Tally::default();
+        for &v in &values {
+            let layer = film([[v * 10.0; 4], [0.0; 4]]);
+            tally.push(&Replicate::of_film(&layer, &all()), &[0], 0);
+        }
+        let (mean, variance) = moments(&values);
+        let s = tally.sample();
+        let third = values
+            .iter()
+            .map(|v| (v - mean) * (v - mean) * (v - mean))
+            .sum::<f64>()
+            / 100.0;
+        let skewness = third / libm::pow(0.99 * variance, 1.5);
+        assert!((s.mean - mean).abs() < 1e-9 && (s.variance / variance - 1.0).abs() < 1e-9);
+        assert!(
+            (s.skewness - skewness).abs() < 1e-7,
+            "{} {skewness}",
+            s.skewness
+        );
+        let pairs = values.windows(2).map(|w| (w[0] - mean) * (w[1] - mean));
+        let correlation = pairs.sum::<f64>() / (99.0 * variance);
+        assert!((tally.correlation() - correlation).abs() < 1e-9);
+    }
+
     #[test]
     fn what_cannot_be_is_counted_and_located() {
         let bad = film([
             [1.0, 2.0, 3.0, 4.0],
             [0.0, f64::INFINITY, f64::NAN, -1e-300],
         ]);
-        let r = Replicate::of_film(&bad);
+        let r = Replicate::of_film(&bad, &all());
         assert_eq!(r.invalid[0].pixels(), 0);
         let expected = Invalid {
             not_finite: 2,
@@ -177,16 +302,16 @@ mod tests {
             first: Some((1, 0)),
         };
         assert_eq!(r.invalid[1], expected);
-        let good = Replicate::of_film(&film([[1.0; 4], [2.0; 4]]));
-        let s = Sample::of_layers(&[good.clone(), r, good], &[0, 1]);
+        let good = Replicate::of_film(&film([[1.0; 4], [2.0; 4]]), &all());
+        let s = Sample::of_layers(&[good.clone(), r, good], &[0, 1], 0);
         assert_eq!((s.invalid, s.invalid_replicate), (expected, 1));
     }
 
     #[test]
     fn regions_are_sums_of_classes() {
-        let a = Replicate::of_film(&film([[1.0, 2.0, 3.0, 4.0], [2.0; 4]]));
-        let b = Replicate::of_film(&film([[2.0, 2.0, 3.0, 5.0], [4.0; 4]]));
-        let s = Sample::of_layers(&[a, b], &[0, 1]);
+        let a = Replicate::of_film(&film([[1.0, 2.0, 3.0, 4.0], [2.0; 4]]), &all());
+        let b = Replicate::of_film(&film([[2.0, 2.0, 3.0, 5.0], [4.0; 4]]), &all());
+        let s = Sample::of_layers(&[a, b], &[0, 1], 0);
         // (10 + 8) / 40 and (12 + 16) / 40.
         assert!((s.mean - 0.575).abs() < 1e-15);
         assert!((s.variance - 0.03125).abs() < 1e-15);

@@ -9,15 +9,18 @@
 
 use nephroid_analytic::camera::Bounded;
 
-use super::distributions::{normal_survival, student_quantile};
-use super::evidence::{FEWEST_REPLICATES, Sample};
+use super::distributions::normal_survival;
+use super::evidence::Sample;
 use super::hypotheses::Levels;
+use super::tails::Tail;
 
-/// Power of equivalence for an unbiased integrator that a run is planned for. Far above 0.9, because a suite is
-/// undecided if one of its checks is.
-pub const PLANNED_EQUIVALENCE: f64 = 0.9999;
-/// Power of difference, for a bias of the margin, that a run is planned for.
-pub const PLANNED_DIFFERENCE: f64 = 0.99;
+/// Power of equivalence for an unbiased integrator at the planned look. A check that misses it gets twice the sample at
+/// the next look.
+pub const PLANNED_EQUIVALENCE: f64 = 0.9;
+/// Power of difference, for a bias of the margin, at the planned look.
+pub const PLANNED_DIFFERENCE: f64 = 0.9;
+/// Fewest replicates that a run is planned for: with fewer, their skewness is known too badly for the levels of a suite.
+pub const FEWEST_PLANNED: u64 = 256;
 /// The power that the minimum detectable bias refers to.
 pub const DETECTION_POWER: f64 = 0.9;
 
@@ -27,15 +30,16 @@ pub fn usable_margin(truth: Bounded, margin: f64) -> f64 {
     margin * truth.value - truth.error * (2.0 + margin)
 }
 
-/// z with P(Z > z) = 1 - [`PLANNED_DIFFERENCE`].
-const Z_DIFFERENCE: f64 = 2.326_347_874;
 /// z with P(Z > z) = (1 - [`PLANNED_EQUIVALENCE`]) / 2: both one-sided tests must reject, and fail on opposite sides.
-const Z_EQUIVALENCE: f64 = 3.890_591_886;
-/// z with P(Z > z) = 1 - [`DETECTION_POWER`].
+const Z_EQUIVALENCE: f64 = 1.644_853_627;
+/// z with P(Z > z) = 1 - [`DETECTION_POWER`], and that of [`PLANNED_DIFFERENCE`].
 const Z_DETECTION: f64 = 1.281_551_566;
 
-/// Centre and scale of the approximation in the module's head.
+/// Centre and scale of the approximation in the module's head. A critical value that is never reached stays infinite.
 fn centre_and_scale(critical: f64, dof: f64) -> (f64, f64) {
+    if critical.is_infinite() {
+        return (critical, 1.0);
+    }
     let centre = critical * (1.0 - 0.25 / dof);
     (centre, libm::sqrt(1.0 + 0.5 * critical * critical / dof))
 }
@@ -53,10 +57,13 @@ fn bias_for(quantile: f64, critical: f64, dof: f64) -> f64 {
 }
 
 /// Number of standard errors that the margin must hold for the planned powers.
-fn standard_errors_needed(levels: Levels, dof: f64) -> f64 {
-    let difference = student_quantile(0.5 * levels.different, dof);
-    let equivalence = student_quantile(levels.equivalent, dof);
-    bias_for(Z_DIFFERENCE, difference, dof).max(bias_for(Z_EQUIVALENCE, equivalence, dof))
+fn standard_errors_needed(levels: Levels, replicates: f64) -> f64 {
+    // Replicates that are no more skewed than what the tails allow for.
+    let tail = Tail::new(replicates as usize, 0.0, false);
+    let difference = tail.critical(0.5 * levels.different);
+    let equivalence = tail.critical(levels.equivalent);
+    let dof = tail.dof();
+    bias_for(Z_DETECTION, difference, dof).max(bias_for(Z_EQUIVALENCE, equivalence, dof))
 }
 
 /// Fewest replicates with which a check of the given variance per replicate is decided at the planned powers. `None` if
@@ -71,28 +78,35 @@ pub fn replicates_needed(
     if !(usable > 0.0) || !(variance.is_finite()) {
         return None;
     }
-    let needed = |dof: f64| {
-        let errors = standard_errors_needed(levels, dof) / usable;
-        libm::ceil(errors * errors * variance)
-    };
-    // The quantiles fall with the degrees of freedom: from many down, then to and fro around the fixed point.
-    let fewest = FEWEST_REPLICATES as f64;
-    let mut replicates = needed(1e6).max(fewest);
-    for _ in 0..20 {
-        let next = needed(replicates - 1.0).max(fewest);
-        let settled = (next - replicates).abs() <= 1.0;
-        replicates = next.max(if settled { replicates } else { fewest });
-        if settled {
-            break;
+    let enough = |n: f64| standard_errors_needed(levels, n) * libm::sqrt(variance / n) <= usable;
+    // What is needed falls with the replicates: doubled until they do, then bisected.
+    let mut high = FEWEST_PLANNED as f64;
+    if enough(high) {
+        return Some(FEWEST_PLANNED);
+    }
+    while !enough(high) {
+        high *= 2.0;
+        if high > 1e18 {
+            return None;
         }
     }
-    Some(replicates as u64)
+    let mut low = 0.5 * high;
+    while high - low > 1.0 {
+        let middle = libm::floor(0.5 * (low + high));
+        if enough(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high as u64)
 }
 
 /// What a sample could have decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Power {
-    /// The smaller of two: the power of "different" for a bias of the margin, and of "equivalent" for no bias.
+    /// The smaller of two: the power of "different" for a bias of the margin, and of "equivalent" for no bias. A verdict
+    /// tells that of the whole run: of going on to the last look that its budget allows.
     pub power: f64,
     /// The relative bias that is called different with power 0.9.
     pub minimum_detectable_bias: f64,
@@ -100,12 +114,15 @@ pub struct Power {
 
 /// Power of the tests on a sample.
 pub fn of_sample(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> Power {
-    let (error, dof) = (sample.standard_error(), sample.dof());
+    let error = sample.standard_error();
     let usable = usable_margin(truth, margin) / error;
-    let critical = student_quantile(0.5 * levels.different, dof);
-    let difference = one_sided_power(usable, critical, dof);
-    let equivalence = one_sided_power(usable, student_quantile(levels.equivalent, dof), dof);
-    let detectable = bias_for(Z_DETECTION, critical, dof) * error;
+    let tails = [sample.tail(true), sample.tail(false)];
+    let dof = tails[0].dof();
+    let critical = |level: f64| tails[0].critical(level).max(tails[1].critical(level));
+    let different = critical(0.5 * levels.different);
+    let difference = one_sided_power(usable, different, dof);
+    let equivalence = one_sided_power(usable, critical(levels.equivalent), dof);
+    let detectable = bias_for(Z_DETECTION, different, dof) * error;
     Power {
         power: difference.min((2.0 * equivalence - 1.0).max(0.0)),
         minimum_detectable_bias: (detectable + truth.error) / truth.value,
@@ -119,7 +136,7 @@ mod tests {
     #[test]
     fn the_quantiles_are_those_of_the_powers() {
         for (z, p) in [
-            (Z_DIFFERENCE, 1.0 - PLANNED_DIFFERENCE),
+            (Z_DETECTION, 1.0 - PLANNED_DIFFERENCE),
             (Z_EQUIVALENCE, 0.5 * (1.0 - PLANNED_EQUIVALENCE)),
             (Z_DETECTION, 1.0 - DETECTION_POWER),
         ] {
@@ -138,12 +155,12 @@ mod tests {
         for deviation in [0.05, 0.2, 1.0] {
             let n = replicates_needed(deviation * deviation, truth, 0.02, levels).unwrap();
             let enough = |n: f64| {
-                standard_errors_needed(levels, n - 1.0) * deviation / libm::sqrt(n)
+                standard_errors_needed(levels, n) * deviation / libm::sqrt(n)
                     <= usable_margin(truth, 0.02)
             };
-            assert!(enough(n as f64 + 1.0), "{deviation}: {n}");
+            assert!(enough(n as f64), "{deviation}: {n}");
             assert!(
-                n == FEWEST_REPLICATES as u64 || !enough(n as f64 - 2.0),
+                n == FEWEST_PLANNED || !enough(n as f64 - 1.0),
                 "{deviation}: {n}"
             );
         }

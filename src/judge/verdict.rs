@@ -1,13 +1,15 @@
-//! The rules that turn a sample and a truth into a verdict.
+//! The rules that turn samples and truths into a verdict.
 //!
 //! In this order: what cannot be (not a number, infinite, negative) is different; a class that is claimed and has no energy in
-//! any replicate is missing, thus different; a sample that does not meet the conditions of the tests is undecided; then
-//! the two tests. If both a bias and equivalence are established, the verdict is equivalent and the bias is printed.
+//! any replicate is missing, thus different; a sample that does not meet the conditions of the tests is undecided, unless
+//! it is too bright by a test that has none ([`super::betting`]); then the two tests. Equivalence is a statement about
+//! the mean over the image. A bias is looked for in the image and in each of its tiles, each with its weight of the
+//! check's error probability: min p/weight is the check's p-value, by the union bound. If both a bias and equivalence are established
+//! where the bias is, the verdict is equivalent and the bias is printed.
 
 use nephroid_analytic::camera::Bounded;
 use serde::Serialize;
 
-use super::distributions::student_quantile;
 use super::evidence::{FEWEST_CONTRIBUTIONS, FEWEST_REPLICATES, Sample};
 use super::hypotheses::{Levels, difference_p, equivalence_p};
 use super::power::{self, Power};
@@ -65,19 +67,22 @@ pub fn exit_code(states: impl IntoIterator<Item = State>) -> u8 {
         .unwrap_or(exit::NOTHING_RAN)
 }
 
-/// What the tests say about one region.
+/// What the tests say about one check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// The state.
     pub state: State,
-    /// Relative difference of the mean from the truth; `None` where there is no sample or no truth.
+    /// Where an established bias is, if not in the mean over the whole image.
+    pub place: Option<String>,
+    /// Relative difference of the mean from the truth, over the image; `None` where there is no sample or no truth.
     pub effect: Option<f64>,
     /// Confidence interval of the effect, at one minus the check's level of a false "different": without the truth's
-    /// error bound it excludes 0 exactly if a bias is established.
+    /// error bound it excludes 0 exactly if a bias of the image's mean is established at this look with the whole level.
+    /// `None` if these replicates could not establish any.
     pub interval: Option<[f64; 2]>,
-    /// p-value of "different".
+    /// p-value of "different", over all regions and looks.
     pub p_different: Option<f64>,
-    /// p-value of "equivalent".
+    /// p-value of "equivalent", over all looks.
     pub p_equivalent: Option<f64>,
     /// Whether a bias is established, however small.
     pub bias_established: bool,
@@ -85,6 +90,8 @@ pub struct Finding {
     pub power: Option<f64>,
     /// See [`Power::minimum_detectable_bias`].
     pub minimum_detectable_bias: Option<f64>,
+    /// Parts of the image that were tested besides the whole.
+    pub tiles: u32,
     /// Replicates that would decide, where these did not and more would.
     pub replicates_needed: Option<u64>,
     /// One sentence for a person; empty where the figures say it all.
@@ -96,6 +103,7 @@ impl Finding {
     pub fn bare(state: State, reason: impl Into<String>) -> Self {
         Finding {
             state,
+            place: None,
             effect: None,
             interval: None,
             p_different: None,
@@ -103,14 +111,112 @@ impl Finding {
             bias_established: false,
             power: None,
             minimum_detectable_bias: None,
+            tiles: 0,
             replicates_needed: None,
             reason: reason.into(),
         }
     }
+
+    /// Decides again at other levels, which [`super::family`] may have raised: only what was undecided changes.
+    pub fn settle(&mut self, levels: Levels) {
+        if self.state != State::Undecided {
+            return;
+        }
+        let below = |p: Option<f64>, level: f64| p.is_some_and(|p| p <= level);
+        self.bias_established |= below(self.p_different, levels.different);
+        if below(self.p_equivalent, levels.equivalent) {
+            self.state = State::Equivalent;
+        } else if self.bias_established {
+            self.state = State::Different;
+        } else {
+            return;
+        }
+        self.replicates_needed = None;
+        self.reason =
+            "decided by what other checks left of the suite's error probability".to_owned();
+    }
 }
 
-/// Decides about one region: `margin` is relative to the truth.
+/// A part of the image beside the whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Its name.
+    pub place: String,
+    /// Its weight of the check's error probability.
+    pub weight: f64,
+    /// What was measured there.
+    pub sample: Sample,
+    /// What the mean should be there.
+    pub truth: Bounded,
+}
+
+/// All that is known about a check at a look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// The whole image.
+    pub sample: Sample,
+    /// What its mean should be.
+    pub truth: Bounded,
+    /// The image's weight of the check's error probability.
+    pub weight: f64,
+    /// Replicates that there may be in the end: the power is that of going on so far.
+    pub most: u64,
+    /// p-value of "replicates are independent", and its weight.
+    pub dependence: Option<(f64, f64)>,
+    /// p-value of "not too bright" at any time, and its weight.
+    pub too_bright: Option<(f64, f64)>,
+    /// The parts.
+    pub parts: Vec<Part>,
+}
+
+/// p-values of a check over the looks so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spent {
+    /// Of "different".
+    pub different: f64,
+    /// Where it was found; `None` for the whole image.
+    pub place: Option<String>,
+    /// Of "equivalent".
+    pub equivalent: f64,
+}
+
+impl Default for Spent {
+    fn default() -> Self {
+        Spent {
+            different: 1.0,
+            place: None,
+            equivalent: 1.0,
+        }
+    }
+}
+
+/// The place of a bias that is none: replicates that depend on each other.
+pub const SEEDS: &str = "seeds";
+
+/// Decides about the whole image alone, at a single look: `margin` is relative to the truth.
 pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> Finding {
+    let case = Case {
+        sample: *sample,
+        truth,
+        weight: 1.0,
+        most: sample.replicates as u64,
+        dependence: None,
+        too_bright: None,
+        parts: Vec::new(),
+    };
+    decide_at(&case, margin, levels, 1.0, &mut Spent::default())
+}
+
+/// Decides at a look that may spend `share` of the error probabilities. What it spends is added to `spent`.
+pub fn decide_at(
+    case: &Case,
+    margin: f64,
+    levels: Levels,
+    share: f64,
+    spent: &mut Spent,
+) -> Finding {
+    let Case { sample, truth, .. } = case;
+    let (sample, truth) = (sample, *truth);
     if sample.invalid.pixels() > 0 {
         return impossible(sample);
     }
@@ -125,39 +231,137 @@ pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> F
             )
         };
     }
-    if let Some(reason) = unmet_condition(sample) {
+    // The betting test is valid at every look at once: it has its weight, and no share.
+    if let Some((p, weight)) = case.too_bright {
+        spend(spent, p / weight, None);
+    }
+    let unmet = unmet_condition(sample);
+    if let (Some(reason), false) = (&unmet, spent.different <= levels.different) {
         let mut finding = Finding::bare(State::Undecided, reason);
         finding.replicates_needed =
             power::replicates_needed(sample.variance, truth, margin, levels)
                 .filter(|&n| n > sample.replicates as u64);
         return finding;
     }
-    let p_different = difference_p(sample, truth);
-    if !carries_light {
-        return light_where_none_is(p_different, levels);
+    let equivalent = |sample: &Sample, truth: Bounded| {
+        let has_meaning = unmet_condition(sample).is_none() && truth.value > truth.error;
+        if has_meaning {
+            equivalence_p(sample, truth, margin) / share
+        } else {
+            1.0
+        }
+    };
+    if unmet.is_none() {
+        let p = difference_p(sample, truth) / (case.weight * share);
+        spend(spent, p, None);
+        if let Some((p, weight)) = case.dependence {
+            spend(spent, p / (weight * share), Some(SEEDS));
+        }
+        spent.equivalent = spent.equivalent.min(equivalent(sample, truth));
     }
-    let p_equivalent = equivalence_p(sample, truth, margin);
-    let Power {
-        power,
-        minimum_detectable_bias,
-    } = power::of_sample(sample, truth, margin, levels);
-    let effect = (sample.mean - truth.value) / truth.value;
-    let half = student_quantile(0.5 * levels.different, sample.dof()) * sample.standard_error()
-        / truth.value;
-    let bias_established = p_different <= levels.different;
-    let state = match (p_equivalent <= levels.equivalent, bias_established) {
+    let tested = || {
+        case.parts
+            .iter()
+            .filter(|p| unmet_condition(&p.sample).is_none())
+    };
+    for part in tested() {
+        let p = difference_p(&part.sample, part.truth) / (part.weight * share);
+        // A bias that is shown to be inside the margin there is no difference.
+        if p < spent.different && equivalent(&part.sample, part.truth) > levels.equivalent {
+            spend(spent, p, Some(&part.place));
+        }
+    }
+    if !carries_light {
+        return light_where_none_is(spent.different, levels);
+    }
+    let bias_established = spent.different <= levels.different;
+    let is_equivalent = spent.equivalent <= levels.equivalent;
+    let elsewhere = bias_established && spent.place.is_some();
+    let state = match (is_equivalent && !elsewhere, bias_established) {
         (true, _) => State::Equivalent,
         (false, true) => State::Different,
         (false, false) => State::Undecided,
     };
+    let finding = figures(case, margin, levels, share, state);
+    let place = spent.place.clone().filter(|_| bias_established);
+    let reason = match (&place, state) {
+        (Some(place), State::Different) if place == SEEDS => {
+            "replicates depend on their predecessors: their seeds do not make them independent"
+                .to_owned()
+        }
+        (Some(place), State::Different) => {
+            let part = case.parts.iter().find(|p| p.place == *place);
+            part.map_or_else(String::new, |p| about_part(p))
+        }
+        (None, State::Different) if unmet.is_some() => {
+            "too bright, whatever the distribution of the replicates".to_owned()
+        }
+        (_, State::Equivalent) if bias_established => {
+            "a bias inside the margin is established".to_owned()
+        }
+        _ => finding.reason.clone(),
+    };
+    Finding {
+        place,
+        reason,
+        p_different: Some(spent.different.min(1.0)),
+        p_equivalent: Some(spent.equivalent.min(1.0)),
+        bias_established,
+        tiles: tested().count() as u32,
+        ..finding
+    }
+}
+
+/// What is wrong in a part.
+fn about_part(part: &Part) -> String {
+    let Part {
+        sample,
+        truth,
+        place,
+        ..
+    } = part;
+    if truth.value > truth.error {
+        let effect = 100.0 * (sample.mean - truth.value) / truth.value;
+        format!("in {place}: {effect:+.2} %")
+    } else {
+        format!("in {place}: light where the truth has none")
+    }
+}
+
+fn spend(spent: &mut Spent, p: f64, place: Option<&str>) {
+    if p < spent.different {
+        (spent.different, spent.place) = (p, place.map(str::to_owned));
+    }
+}
+
+/// What is told about a decision on the image's mean: `different` and `equivalent` levels are those left for it at this
+/// look.
+fn figures(case: &Case, margin: f64, levels: Levels, share: f64, state: State) -> Finding {
+    let (sample, truth) = (&case.sample, case.truth);
+    let here = Levels {
+        different: levels.different * case.weight * share,
+        equivalent: levels.equivalent * share,
+    };
+    let Power {
+        minimum_detectable_bias,
+        ..
+    } = power::of_sample(sample, truth, margin, here);
+    let in_the_end = Sample {
+        replicates: sample.replicates.max(case.most as usize),
+        ..*sample
+    };
+    let Power { power, .. } = power::of_sample(&in_the_end, truth, margin, here);
+    let effect = (sample.mean - truth.value) / truth.value;
+    let half = |above: bool| {
+        let critical = sample.tail(above).critical(0.5 * levels.different);
+        critical * sample.standard_error() / truth.value
+    };
+    let interval = [effect - half(true), effect + half(false)];
     let needed = match state {
-        State::Undecided => power::replicates_needed(sample.variance, truth, margin, levels),
+        State::Undecided => power::replicates_needed(sample.variance, truth, margin, here),
         _ => None,
     };
     let reason = match state {
-        State::Equivalent if bias_established => {
-            "a bias inside the margin is established".to_owned()
-        }
         State::Undecided if needed.is_none() => {
             "the truth is not known well enough for this margin".to_owned()
         }
@@ -167,17 +371,13 @@ pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> F
         _ => String::new(),
     };
     Finding {
-        state,
         effect: Some(effect),
-        interval: Some([effect - half, effect + half]),
-        p_different: Some(p_different),
-        p_equivalent: Some(p_equivalent),
-        bias_established,
+        interval: Some(interval).filter(|i| i.iter().all(|v| v.is_finite())),
         power: Some(power),
-        minimum_detectable_bias: Some(minimum_detectable_bias),
+        minimum_detectable_bias: Some(minimum_detectable_bias).filter(|b| b.is_finite()),
         // With an effect near the margin's edge the plan for no bias is not enough: at least twice as many.
         replicates_needed: needed.map(|n| n.max(2 * sample.replicates as u64)),
-        reason,
+        ..Finding::bare(state, reason)
     }
 }
 

@@ -126,7 +126,7 @@ pub struct Study {
 const fn default_paths(technique: Technique) -> u64 {
     match technique {
         Technique::Merge => 40_000_000,
-        _ => 250_000_000,
+        _ => 200_000_000,
     }
 }
 

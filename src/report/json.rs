@@ -34,6 +34,7 @@ fn verdict(v: &Verdict) -> Value {
     let f = &v.finding;
     json!({
         "scene": v.scene,
+        "variation": v.variation,
         "integrator": v.integrator,
         "class": v.class,
         "region": v.region,
@@ -52,7 +53,12 @@ fn verdict(v: &Verdict) -> Value {
         "truth": v.truth.map(|t| t.value),
         "truth_error_bound": v.truth.map(|t| t.error),
         "bandwidth": v.bandwidth,
+        "tiles": f.tiles,
+        "tail_index": v.tail.map(|t| json!({
+            "index": t.index, "standard_error": t.error, "stable": t.is_stable,
+        })),
         "replicates": v.replicates,
+        "looks": v.looks,
         "paths": v.paths,
         "paths_needed": v.paths_needed,
         "seed": v.seed,

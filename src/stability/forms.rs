@@ -1,16 +1,20 @@
 //! The closed forms of every kind in any precision, from the same numbers as their certificates.
 
-use nephroid_analytic::certificate::Certified;
+use nephroid_analytic::certificate::radiometry::Point;
 use nephroid_analytic::certificate::scene::Scene;
+use nephroid_analytic::certificate::{self, Certified};
 use nephroid_analytic::enclosure::Enclosure;
 use nephroid_analytic::kinds::Estimate;
 use nephroid_analytic::kinds::conic_mirrors::{Ellipsoid, Hyperboloid};
+use nephroid_analytic::kinds::conic_wall::ConicWall;
 use nephroid_analytic::kinds::cylinder_cup::{self, Beam, CylinderCup, Wall, point_light::Lamp};
 use nephroid_analytic::kinds::diffuse;
 use nephroid_analytic::kinds::flat_interface::FlatInterface;
+use nephroid_analytic::kinds::glass_pillar::GlassPillar;
 use nephroid_analytic::kinds::glass_slab::GlassSlab;
 use nephroid_analytic::kinds::glass_sphere::GlassSphere;
 use nephroid_analytic::kinds::paraboloid::{self, Paraboloid};
+use nephroid_analytic::kinds::pillar::Pillar;
 use nephroid_analytic::kinds::planar_chains::Wedge;
 use nephroid_analytic::kinds::planar_mirror::PlanarMirror;
 use nephroid_analytic::kinds::sphere_mirror::{self, Side, SphereMirror};
@@ -172,8 +176,60 @@ pub fn irradiance<S: Scalar>(kind: &str, i: &Inputs) -> Option<Estimate<S>> {
                 .ok()?
                 .caustic(x)
         }
+        "pillar" => pillar::<S>(i).caustic(x, y),
+        "conic-wall" => conic_wall::<S>(i).caustic(x, y),
+        "glass-pillar" => glass_pillar::<S>(i).caustic(x, y, interactions(i)),
         _ => return None,
     })
+}
+
+fn pillar<S: Scalar>(i: &Inputs) -> Pillar<S> {
+    let centre = i.vector::<S>("centre");
+    Pillar {
+        x: centre.x,
+        y: centre.y,
+        radius: i.scalar("a"),
+        height: i.scalar("height"),
+        reflectance: i.scalar("R"),
+        light: i.vector("light"),
+        intensity: i.scalar("I"),
+    }
+}
+
+/// A closed ellipse.
+fn conic_wall<S: Scalar>(i: &Inputs) -> ConicWall<S> {
+    let (focus, axis) = (i.vector::<S>("focus"), i.vector::<S>("axis"));
+    ConicWall {
+        x: focus.x,
+        y: focus.y,
+        axis: (axis.x, axis.y),
+        parameter: i.scalar("p"),
+        eccentricity: i.scalar("e"),
+        half_arc: None,
+        height: i.scalar("height"),
+        reflectance: i.scalar("R"),
+        light: i.vector("light"),
+        intensity: i.scalar("I"),
+    }
+}
+
+fn glass_pillar<S: Scalar>(i: &Inputs) -> GlassPillar<S> {
+    let centre = i.vector::<S>("centre");
+    GlassPillar {
+        x: centre.x,
+        y: centre.y,
+        radius: i.scalar("a"),
+        height: i.scalar("height"),
+        index: i.scalar("n"),
+        irradiance: i.scalar("E0"),
+        sin_elevation: i.scalar("sin_elevation"),
+        cos_elevation: i.scalar("cos_elevation"),
+    }
+}
+
+/// Interactions with the side of a glass pillar.
+fn interactions(i: &Inputs) -> u32 {
+    i.scalar::<f64>("interactions") as u32
 }
 
 /// The enclosure of the same quantity for exactly the same numbers.
@@ -187,6 +243,22 @@ pub fn enclosed(kind: &str, i: &Inputs) -> Option<Certified> {
         let floor = nephroid_analytic::certificate::diffuse::Floor::read(i)?;
         return Some(floor.direct_enclosed(point));
     }
+    let bundle = match kind {
+        "pillar" => certificate::pillar::caustic_enclosed(&pillar(i), point.x, point.y),
+        "conic-wall" => certificate::conic_wall::caustic_enclosed(&conic_wall(i), point.x, point.y),
+        "glass-pillar" => certificate::glass_pillar::caustic_enclosed(
+            &glass_pillar(i),
+            point.x,
+            point.y,
+            interactions(i),
+        ),
+        _ => return scene_enclosed(kind, i, point),
+    };
+    Some(bundle.total)
+}
+
+/// Of the kinds that have a reference table.
+fn scene_enclosed(kind: &str, i: &Inputs, point: Point) -> Option<Certified> {
     let light = Scene::read(kind, i)?.light_enclosed(point)?;
     light.classes.first().map(|(_, bundle)| bundle.total)
 }

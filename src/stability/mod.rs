@@ -7,9 +7,11 @@
 //! number, measured on the enclosures, not told by the form) times the precision's unit. The difference of their logarithms
 //! is what the formula itself loses: its *excess*, in decimal digits.
 
+pub mod bandwidth;
 pub mod forms;
 pub mod inputs;
 pub mod plot;
+pub mod quantity;
 pub mod sweeps;
 
 use nephroid_analytic::scalar::Scalar;
@@ -160,7 +162,8 @@ pub fn study(kind: Option<&str>) -> Vec<Row> {
         .iter()
         .filter(|s| kind.is_none_or(|k| k == s.kind))
         .flat_map(|sweep| {
-            Precision::ALL.map(|precision| Row {
+            let precisions = sweep.quantity.precisions().iter();
+            precisions.map(move |&precision| Row {
                 kind: sweep.kind,
                 danger: sweep.danger,
                 parameter: sweep.parameter,
@@ -183,31 +186,33 @@ pub fn study(kind: Option<&str>) -> Vec<Row> {
 
 fn step<S: Scalar>(sweep: &Sweep, t: f64) -> Outcome {
     let inputs = (sweep.at)(t).rounded::<S>();
-    let (Some(estimate), Some(truth)) = (
-        forms::irradiance::<S>(sweep.kind, &inputs),
-        forms::enclosed(sweep.kind, &inputs),
+    let (Some([value, bound]), Some(truth)) = (
+        sweep.quantity.estimate::<S>(sweep.kind, &inputs),
+        sweep.quantity.reference(sweep.kind, &inputs),
     ) else {
         return Outcome::Outside;
     };
-    let (value, bound) = (estimate.value.to_f64(), estimate.error.to_f64());
     if !(value.is_finite() && bound <= value.abs()) {
         return Outcome::Singular;
     }
-    if truth.undecided || !truth.value.is_finite() {
+    if !truth.is_proven() {
         return Outcome::Undecided;
     }
-    let middle = truth.value.middle();
+    let middle = truth.middle();
     if middle == 0.0 && value == 0.0 {
         return Outcome::Outside;
     }
-    let (low, high) = (truth.value.low(), truth.value.high());
+    let unit = S::EPSILON.to_f64();
+    let conditioning = conditioning::<S>(sweep, &inputs, middle);
+    // At the edge of a shadow that light reaches continuously, darkness is as good as a value without a digit.
+    if value == 0.0 && conditioning * unit >= 1.0 {
+        return Outcome::Singular;
+    }
     Outcome::Compared {
         // Zero error has no logarithm: half a unit of rounding is the least that is told.
-        error: ((value - middle) / middle)
-            .abs()
-            .max(0.5 * S::EPSILON.to_f64()),
-        conditioning: conditioning::<S>(sweep.kind, &inputs, middle),
-        bounded: value >= low - bound && value <= high + bound,
+        error: ((value - middle) / middle).abs().max(0.5 * unit),
+        conditioning,
+        bounded: value >= truth.low - bound && value <= truth.high + bound,
     }
 }
 
@@ -216,14 +221,12 @@ fn step<S: Scalar>(sweep: &Sweep, t: f64) -> Outcome {
 const CHANGE: f64 = 64.0;
 
 /// Sum over all numbers of the relative change of the value per relative change of the number.
-fn conditioning<S: Scalar>(kind: &str, inputs: &Inputs, value: f64) -> f64 {
+fn conditioning<S: Scalar>(sweep: &Sweep, inputs: &Inputs, value: f64) -> f64 {
     let delta = CHANGE * S::EPSILON.to_f64();
     let changes = inputs.perturbed(delta).into_iter().map(|changed| {
         // A number that counts something cannot be changed: then nothing is there to compare with.
-        match forms::enclosed(kind, &changed) {
-            Some(truth) if !truth.undecided && truth.value.is_finite() => {
-                ((truth.value.middle() - value) / value).abs() / delta
-            }
+        match sweep.quantity.reference(sweep.kind, &changed) {
+            Some(truth) if truth.is_proven() => ((truth.middle() - value) / value).abs() / delta,
             Some(_) => f64::INFINITY,
             None => 0.0,
         }

@@ -10,6 +10,8 @@ use nephroid_analytic::scene::Entry;
 
 use crate::error::Error;
 use crate::integrators::{Plan, Technique, Treatment};
+use crate::regions::Regions;
+use crate::truth::TruthImage;
 use crate::{expectation, truth};
 
 /// Relative tolerance of the class means as a part of the margin. What is reached is a part of every test, and takes about
@@ -27,10 +29,29 @@ struct Finite {
 
 type ClassMoments = Vec<(PathClass, Moments)>;
 
+/// What one class should be, in each area of the image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expected {
+    /// Over the whole image [W m⁻² sr⁻¹].
+    pub image: Bounded,
+    /// Over each area of the regions, the image among them; empty where only the image is known.
+    pub areas: Vec<Bounded>,
+}
+
+impl Expected {
+    /// Known over the image only.
+    pub fn of_image(image: Bounded) -> Self {
+        Expected {
+            image,
+            areas: Vec::new(),
+        }
+    }
+}
+
 /// Truths of a list of scenes, each computed once.
 pub struct Truths {
     tolerance: f64,
-    exact: HashMap<usize, Vec<Bounded>>,
+    exact: HashMap<usize, TruthImage>,
     finite: Vec<(Finite, ClassMoments)>,
 }
 
@@ -44,7 +65,7 @@ impl Truths {
         }
     }
 
-    /// Per class of the plan, what its mean over the image should be; `None` for classes that are not sampled. `scene` is
+    /// Per class of the plan, what its means should be; `None` for classes that are not sampled. `scene` is
     /// the entry's position in the list; `bandwidths` are those of the iterations, which all have as many paths.
     ///
     /// # Errors
@@ -54,21 +75,25 @@ impl Truths {
         scene: usize,
         entry: &Entry,
         plan: &Plan,
+        regions: &Regions,
         kernel: Option<Kernel>,
         bandwidths: &[f64],
-    ) -> Result<Vec<Option<Bounded>>, Error> {
+    ) -> Result<Vec<Option<Expected>>, Error> {
         let mut result = Vec::with_capacity(plan.len());
         for class in plan {
             result.push(match class.treatment {
                 Treatment::NotSampled => None,
                 Treatment::Exact(_) => {
                     let tolerance = self.tolerance;
-                    let means = self
+                    let image = self
                         .exact
                         .entry(scene)
-                        .or_insert_with(|| truth::image(entry, tolerance).class_means());
+                        .or_insert_with(|| truth::image(entry, tolerance));
                     let position = entry.kind.classes().iter().position(|&c| c == class.class);
-                    position.map(|p| means[p])
+                    position.map(|layer| Expected {
+                        image: image.class_means()[layer],
+                        areas: image.area_means(layer, regions),
+                    })
                 }
                 Treatment::Regularized(technique) => match mollified(technique) {
                     Some(technique) => {
@@ -80,7 +105,7 @@ impl Truths {
                         };
                         let means = self.finite(entry, key)?;
                         let mean = means.iter().find(|(c, _)| *c == class.class);
-                        mean.map(|(_, m)| m.mean)
+                        mean.map(|(_, m)| Expected::of_image(m.mean))
                     }
                     None => None,
                 },

@@ -2,6 +2,8 @@
 
 pub mod effort;
 pub mod expected;
+pub mod gather;
+pub mod metamorphic;
 pub mod replicates;
 pub mod run;
 pub mod sizing;

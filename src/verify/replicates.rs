@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::film::Film;
 use crate::integrators::Prepared;
 use crate::judge::evidence::Replicate;
+use crate::regions::Regions;
 use crate::stream::philox;
 
 /// The phase of the final test.
@@ -68,17 +69,18 @@ pub struct Canvas {
     pub classes: &'static [PathClass],
 }
 
-/// Runs replicates `0 .. count` of a phase.
+/// Runs some replicates of a phase. What a replicate is does not depend on which others are run.
 pub fn run(
     prepared: &dyn Prepared,
     canvas: Canvas,
+    regions: &Regions,
     shape: &Shape,
     seeds: Seeds,
     phase: u32,
-    count: u32,
+    replicates: core::ops::Range<u32>,
 ) -> Vec<Replicate> {
     let film = || Film::new(canvas.width, canvas.height, canvas.classes);
-    (0..count)
+    replicates
         .into_par_iter()
         .map_init(film, |film, k| {
             film.clear();
@@ -86,7 +88,7 @@ pub fn run(
             for (i, &bandwidth) in (0..).zip(&shape.bandwidths) {
                 prepared.iterate(seed, i, shape.paths_per_iteration, bandwidth, film);
             }
-            Replicate::of_film(film)
+            Replicate::of_film(film, regions)
         })
         .collect()
 }

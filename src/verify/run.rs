@@ -2,26 +2,29 @@
 
 use std::time::Instant;
 
-use nephroid_analytic::camera::Bounded;
+use nephroid_analytic::bandwidth::Kernel as TruthKernel;
+use nephroid_analytic::scene::Entry;
 
 use super::effort::Effort;
-use super::expected::Truths;
-use super::replicates::{Canvas, FINAL, Seeds, Shape, run as run_replicates};
-use super::sizing::{self, Check, Demand, Size};
+use super::expected::{Expected, Truths};
+use super::gather::{Judged, gather};
+use super::metamorphic;
+use super::replicates::{Canvas, Seeds, Shape};
+use super::sizing::Demand;
 use super::suite::{Coverage, LeftOut, Pair, Subject, select};
 use super::verdicts::{ALL_CLASSES, NotRun, Outcome, Verdict, WHOLE_IMAGE};
 use crate::error::Error;
-use crate::integrators::{Integrator, Kernel, Prepared, Technique, Treatment};
-use crate::judge::evidence::{Replicate, Sample};
+use crate::integrators::{Integrator, Kernel, Plan, Technique, Treatment};
+use crate::judge::family::holm;
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
-use crate::judge::verdict::{Finding, State, decide};
+use crate::regions::Regions;
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
 const MERGING_ITERATIONS: u32 = 8;
-/// Paths of a replicate for each pixel: clearing and summing the film costs a tenth of drawing them.
-const PATHS_PER_PIXEL: u64 = 8;
+/// Paths of a replicate for each pixel: clearing and summing the film costs a fifth of drawing them.
+const PATHS_PER_PIXEL: u64 = 4;
 /// Fewest paths of a replicate.
-const FEWEST_PATHS: u64 = 1 << 16;
+const FEWEST_PATHS: u64 = 1 << 15;
 
 /// What to verify.
 pub struct Request {
@@ -45,6 +48,10 @@ pub struct Request {
     pub seed: u64,
     /// Angle α [rad] or radius r [m].
     pub bandwidth: f64,
+    /// The most paths of one pair of scene and integrator.
+    pub most_paths: u64,
+    /// Whether integrators are also run on changed scenes, of which the change of the image is known.
+    pub variations: bool,
     /// The mollifier; `None` for each method's default.
     pub kernel: Option<Kernel>,
 }
@@ -67,16 +74,29 @@ pub fn run(
             reason: l.reason.clone(),
         }));
     }
-    let planned: u64 = pairs.iter().map(Pair::checks).sum();
+    let varied = metamorphic::jobs(request, &pairs);
+    let planned: u64 = pairs.iter().map(Pair::checks).sum::<u64>()
+        + varied.iter().map(|v| pairs[v.pair].checks()).sum::<u64>();
     let checks = planned.max(request.checks.unwrap_or(0));
     let levels = Levels::shared(request.level, EQUIVALENCE_LEVEL, checks);
     let mut verdicts = Vec::new();
+    let of = pairs.len() + varied.len();
     for (position, pair) in pairs.iter().enumerate() {
         let scene = &request.scenes[pair.scene].entry.name;
         let integrator = request.integrators[pair.integrator].name();
-        progress(position, pairs.len(), scene, integrator);
+        progress(position, of, scene, integrator);
         verdicts.extend(run_pair(request, pair, levels, checks, truths)?);
     }
+    for (position, varied) in (pairs.len()..).zip(&varied) {
+        let pair = &pairs[varied.pair];
+        let integrator = request.integrators[pair.integrator].name();
+        progress(position, of, &varied.name(), integrator);
+        verdicts.extend(varied.run(request, pair, levels, checks, truths)?);
+    }
+    if !request.variations {
+        not_run.extend(metamorphic::left_out(request, &pairs));
+    }
+    settle(&mut verdicts, request.level, checks);
     Ok(Outcome {
         verdicts,
         not_run,
@@ -91,6 +111,46 @@ pub fn run(
     })
 }
 
+/// What is still undecided is decided by the error probability that the decided checks leave: Holm's procedure.
+fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
+    let p = |of: fn(&Verdict) -> Option<f64>| -> Vec<f64> {
+        verdicts.iter().map(|v| of(v).unwrap_or(f64::NAN)).collect()
+    };
+    let different = holm(&p(|v| v.finding.p_different), level, checks);
+    let equivalent = holm(&p(|v| v.finding.p_equivalent), EQUIVALENCE_LEVEL, checks);
+    for (verdict, (different, equivalent)) in verdicts
+        .iter_mut()
+        .zip(different.into_iter().zip(equivalent))
+    {
+        let levels = Levels {
+            different: different.unwrap_or(verdict.levels.different),
+            equivalent: equivalent.unwrap_or(verdict.levels.equivalent),
+        };
+        verdict.finding.settle(levels);
+        verdict.levels = levels;
+    }
+}
+
+/// One integrator on one scene, as it is run.
+pub(super) struct Job<'a> {
+    /// Position of the integrator.
+    pub integrator: usize,
+    /// What the scene is called on the command line.
+    pub argument: &'a str,
+    /// The scene.
+    pub entry: &'a Entry,
+    /// What the integrator does about its classes.
+    pub plan: &'a Plan,
+    /// What a replicate consists of, at first.
+    pub shape: Shape,
+    /// The areas of its image.
+    pub regions: Regions,
+    /// What each class should be.
+    pub expected: Vec<Option<Expected>>,
+    /// How the scene was changed; `None` if it was not.
+    pub variation: Option<String>,
+}
+
 fn run_pair(
     request: &Request,
     pair: &Pair,
@@ -102,46 +162,93 @@ fn run_pair(
     let subject = &request.scenes[pair.scene];
     let integrator = request.integrators[pair.integrator].as_ref();
     let entry = &subject.entry;
-    let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
-    let shape = first_shape(integrator, pair, request.bandwidth, pixels);
-    let kernel = request.kernel.and_then(|k| k.to_string().parse().ok());
-    let expected = truths.of(pair.scene, entry, &pair.plan, kernel, &shape.bandwidths)?;
-    let canvas = Canvas {
-        width: entry.camera.width,
-        height: entry.camera.height,
-        classes: entry.kind.classes(),
-    };
-    let demand = Demand {
-        margin: request.margin,
-        levels,
-        most_paths: request.effort.most_paths(),
-    };
-    let seeds = Seeds::new(request.seed, &entry.name, integrator.name());
-    let evidence = gather(
-        || integrator.prepare(entry),
-        canvas,
+    let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
+    let regions = Regions::quadtree(entry.camera.width, entry.camera.height);
+    let expected = truths.of(
+        pair.scene,
+        entry,
+        &pair.plan,
+        &regions,
+        request.truth_kernel(),
+        &shape.bandwidths,
+    )?;
+    let job = Job {
+        integrator: pair.integrator,
+        argument: &subject.argument,
+        entry,
+        plan: &pair.plan,
         shape,
-        seeds,
-        &expected,
-        demand,
-    );
-    let seconds = started.elapsed().as_secs_f64();
-    let command = command(request, &subject.argument, integrator.name(), checks);
-    let verdicts = judge(&evidence, &expected, demand)
-        .into_iter()
-        .map(|judged| {
-            let treatment = judged.class.map(|c| pair.plan[c].treatment);
+        regions,
+        expected,
+        variation: None,
+    };
+    Ok(job.run(request, levels, checks, started))
+}
+
+impl Request {
+    /// The mollifier, as the truth knows it.
+    pub(super) fn truth_kernel(&self) -> Option<TruthKernel> {
+        self.kernel.and_then(|k| k.to_string().parse().ok())
+    }
+}
+
+impl Job<'_> {
+    /// Runs it and judges it. `started` is when its truth began to be computed.
+    pub fn run(
+        self,
+        request: &Request,
+        levels: Levels,
+        checks: u64,
+        started: Instant,
+    ) -> Vec<Verdict> {
+        let integrator = request.integrators[self.integrator].as_ref();
+        let entry = self.entry;
+        let canvas = Canvas {
+            width: entry.camera.width,
+            height: entry.camera.height,
+            classes: entry.kind.classes(),
+        };
+        let demand = Demand {
+            margin: request.margin,
+            levels,
+            most_paths: request.most_paths,
+        };
+        let mut identity = entry.name.clone();
+        if let Some(variation) = &self.variation {
+            identity.push('/');
+            identity.push_str(variation);
+        }
+        let seeds = Seeds::new(request.seed, &identity, integrator.name());
+        let evidence = gather(
+            || integrator.prepare(entry),
+            canvas,
+            &self.regions,
+            self.shape,
+            seeds,
+            &self.expected,
+            demand,
+        );
+        let seconds = started.elapsed().as_secs_f64();
+        let mut command = command(request, self.argument, integrator.name(), checks);
+        if self.variation.is_some() {
+            command.push_str(" --variations");
+        }
+        let per_replicate = evidence.size.shape.paths();
+        let replicates = evidence.replicates;
+        let verdict = |judged: Judged| {
+            let treatment = judged.class.map(|c| self.plan[c].treatment);
             let regularized = match treatment {
                 Some(t) => is_regularized(t),
-                None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
+                None => self.plan.iter().any(|c| is_regularized(c.treatment)),
             };
-            let class = judged.class.map(|c| pair.plan[c].class.to_string());
-            let per_replicate = evidence.size.shape.paths();
+            let class = judged.class.map(|c| self.plan[c].class.to_string());
+            let place = judged.finding.place.clone();
             Verdict {
                 scene: entry.name.clone(),
+                variation: self.variation.clone(),
                 integrator: integrator.name().to_owned(),
                 class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
-                region: WHOLE_IMAGE.to_owned(),
+                region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
                 paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
                 finding: judged.finding,
                 truth: judged.truth,
@@ -149,14 +256,17 @@ fn run_pair(
                 margin: request.margin,
                 levels,
                 bandwidth: regularized.then_some(request.bandwidth),
-                replicates: evidence.replicates.len() as u32,
-                paths: evidence.replicates.len() as u64 * per_replicate,
+                tail: judged.tail,
+                replicates,
+                looks: evidence.looks,
+                paths: u64::from(replicates) * per_replicate,
                 seed: request.seed,
                 seconds,
                 command: command.clone(),
             }
-        });
-    Ok(verdicts.collect())
+        };
+        evidence.judged.into_iter().map(verdict).collect()
+    }
 }
 
 fn is_regularized(treatment: Treatment) -> bool {
@@ -164,10 +274,16 @@ fn is_regularized(treatment: Treatment) -> bool {
 }
 
 /// The replicates that pilots start with.
-fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels: u64) -> Shape {
+pub(super) fn first_shape(
+    integrator: &dyn Integrator,
+    plan: &Plan,
+    bandwidth: f64,
+    entry: &Entry,
+) -> Shape {
+    let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
     let schedule = integrator.schedule(bandwidth);
     let merges = |t: Treatment| t == Treatment::Regularized(Technique::Merge);
-    let iterations = if pair.plan.iter().any(|c| merges(c.treatment)) {
+    let iterations = if plan.iter().any(|c| merges(c.treatment)) {
         MERGING_ITERATIONS
     } else {
         1
@@ -176,129 +292,6 @@ fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels:
     Shape {
         bandwidths: (0..iterations).map(|i| schedule.bandwidth(i)).collect(),
         paths_per_iteration: paths / u64::from(iterations),
-    }
-}
-
-/// The replicates of a final test.
-pub struct Evidence {
-    /// The replicates; none if nothing is claimed.
-    pub replicates: Vec<Replicate>,
-    /// What was planned.
-    pub size: Size,
-}
-
-/// Plans and runs the final test of one integrator on one scene. `expected` is the mean of each class, `None` for what is not
-/// sampled.
-pub fn gather(
-    prepare: impl FnOnce() -> Box<dyn Prepared>,
-    canvas: Canvas,
-    shape: Shape,
-    seeds: Seeds,
-    expected: &[Option<Bounded>],
-    demand: Demand,
-) -> Evidence {
-    let checks: Vec<Check> = regions(expected)
-        .into_iter()
-        .map(|(_, check)| check)
-        .collect();
-    if checks.is_empty() {
-        return Evidence {
-            replicates: Vec::new(),
-            size: Size {
-                shape,
-                replicates: 0,
-            },
-        };
-    }
-    let prepared = prepare();
-    let prepared = prepared.as_ref();
-    let size = sizing::plan(prepared, canvas, shape, seeds, &checks, demand);
-    let replicates = run_replicates(prepared, canvas, &size.shape, seeds, FINAL, size.replicates);
-    Evidence { replicates, size }
-}
-
-/// What is checked: each claimed class, and their sum (class `None`) if there are several.
-fn regions(expected: &[Option<Bounded>]) -> Vec<(Option<usize>, Check)> {
-    let claimed = || {
-        expected
-            .iter()
-            .enumerate()
-            .filter_map(|(i, e)| e.map(|e| (i, e)))
-    };
-    let mut regions: Vec<_> = claimed()
-        .map(|(i, truth)| {
-            let layers = vec![i];
-            (Some(i), Check { layers, truth })
-        })
-        .collect();
-    if regions.len() > 1 {
-        let truth = claimed().fold(Bounded::default(), |sum, (_, e)| Bounded {
-            value: sum.value + e.value,
-            error: sum.error + e.error,
-        });
-        let layers = claimed().map(|(i, _)| i).collect();
-        regions.push((None, Check { layers, truth }));
-    }
-    regions
-}
-
-/// A finding about one region.
-pub struct Judged {
-    /// Position of the class, `None` for the sum of those claimed.
-    pub class: Option<usize>,
-    /// What the mean should be.
-    pub truth: Option<Bounded>,
-    /// What it is.
-    pub mean: Option<f64>,
-    /// What follows.
-    pub finding: Finding,
-}
-
-/// Decides about every class in order, and then about their sum.
-pub fn judge(evidence: &Evidence, expected: &[Option<Bounded>], demand: Demand) -> Vec<Judged> {
-    let mut regions = regions(expected).into_iter().peekable();
-    let decided = |(class, check): (Option<usize>, Check)| {
-        let sample = Sample::of_layers(&evidence.replicates, &check.layers);
-        Judged {
-            class,
-            truth: Some(check.truth),
-            mean: Some(sample.mean),
-            finding: decide(&sample, check.truth, demand.margin, demand.levels),
-        }
-    };
-    let mut judged = Vec::new();
-    for position in 0..expected.len() {
-        match regions.next_if(|(class, _)| *class == Some(position)) {
-            Some(region) => judged.push(decided(region)),
-            None => judged.push(not_sampled(evidence, position)),
-        }
-    }
-    judged.extend(regions.map(decided));
-    judged
-}
-
-/// A class that is declared impossible must indeed stay empty.
-fn not_sampled(evidence: &Evidence, position: usize) -> Judged {
-    let sample = Sample::of_layers(&evidence.replicates, &[position]);
-    let finding = if sample.contributions > 0 {
-        Finding::bare(
-            State::Different,
-            format!(
-                "declared impossible, yet it has {} contributions",
-                sample.contributions
-            ),
-        )
-    } else {
-        Finding::bare(
-            State::NotSampled,
-            "the method cannot build paths of this class",
-        )
-    };
-    Judged {
-        class: Some(position),
-        truth: None,
-        mean: None,
-        finding,
     }
 }
 
@@ -324,6 +317,11 @@ fn command(request: &Request, scene: &str, integrator: &str, checks: u64) -> Str
         "--level",
         request.level.to_string(),
         crate::judge::hypotheses::LEVEL.to_string(),
+    );
+    add(
+        "--budget",
+        request.most_paths.to_string(),
+        request.effort.most_paths().to_string(),
     );
     add(
         "--bandwidth",

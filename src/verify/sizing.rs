@@ -1,5 +1,5 @@
-//! How many paths a fixed-sample test needs: found by pilots, whose replicates are thrown away so that the final test
-//! stays a test with a sample size that does not depend on its data.
+//! How many paths a test needs: found by pilots, whose replicates are thrown away so that the looks of the final test
+//! do not depend on its data.
 
 use nephroid_analytic::camera::Bounded;
 
@@ -7,12 +7,15 @@ use super::replicates::{Canvas, Seeds, Shape, run};
 use crate::integrators::Prepared;
 use crate::judge::evidence::{FEWEST_CONTRIBUTIONS, FEWEST_REPLICATES, Replicate, Sample};
 use crate::judge::hypotheses::Levels;
-use crate::judge::power::replicates_needed;
+use crate::judge::power::{FEWEST_PLANNED, replicates_needed};
+use crate::regions::Regions;
 
 /// Replicates of a pilot: a variance to about 20 %.
 const PILOT_REPLICATES: u32 = 48;
 /// The pilot's variance is multiplied by this before it is used: it may have been lucky.
-const VARIANCE_ALLOWANCE: f64 = 1.3;
+const VARIANCE_ALLOWANCE: f64 = 1.2;
+/// The planned look has half of the error probability, and the image, where it has tiles, half of that.
+const SHARE_PLANNED: f64 = 0.25;
 /// A replicate is made large enough for this many contributions on average, so that none of the final test falls below
 /// [`FEWEST_CONTRIBUTIONS`].
 const CONTRIBUTIONS_WANTED: u64 = 2 * FEWEST_CONTRIBUTIONS;
@@ -54,8 +57,10 @@ pub struct Demand {
 pub struct Size {
     /// What a replicate consists of.
     pub shape: Shape,
-    /// How many there are.
+    /// How many are planned.
     pub replicates: u32,
+    /// How many there may be in the end.
+    pub most: u32,
 }
 
 /// Runs pilots until they have seen enough, makes replicates large enough for normal means, then plans for the hardest
@@ -71,12 +76,14 @@ pub fn plan(
     let mut shape = first;
     let mut pilot = Vec::new();
     let mut factor = 1;
+    let regions = Regions::image(canvas.width, canvas.height);
     for phase in 1.. {
-        pilot = run(prepared, canvas, &shape, seeds, phase, PILOT_REPLICATES);
+        let replicates = 0..PILOT_REPLICATES;
+        pilot = run(prepared, canvas, &regions, &shape, seeds, phase, replicates);
         factor = growth(&pilot, checks, &shape, demand);
         let mut seen = checks
             .iter()
-            .map(|c| Sample::of_layers(&pilot, &c.layers))
+            .map(|c| Sample::of_layers(&pilot, &c.layers, 0))
             .filter(|s| s.contributions > 0);
         let enough = seen.all(|s| s.contributions >= CONTRIBUTIONS_FOR_VARIANCE);
         if factor <= 1 || enough || phase == MOST_PILOTS {
@@ -88,25 +95,34 @@ pub fn plan(
     let most = (demand.most_paths / shape.paths()).clamp(FEWEST_REPLICATES as u64, MOST_REPLICATES);
     let samples = checks
         .iter()
-        .map(|c| (Sample::of_layers(&pilot, &c.layers), c.truth));
+        .map(|c| (Sample::of_layers(&pilot, &c.layers, 0), c.truth));
+    let levels = Levels {
+        different: SHARE_PLANNED * demand.levels.different,
+        equivalent: 2.0 * SHARE_PLANNED * demand.levels.equivalent,
+    };
     let needed = samples.map(|(sample, truth)| {
         if sample.contributions == 0 {
             return PATHS_BEFORE_MISSING.div_ceil(shape.paths());
         }
         // Paths are independent (photon maps too, being of bounded size), so the variance of a mean falls as 1/paths.
         let variance = VARIANCE_ALLOWANCE * sample.variance / factor as f64;
-        replicates_needed(variance, truth, demand.margin, demand.levels).unwrap_or(0)
+        replicates_needed(variance, truth, demand.margin, levels).unwrap_or(0)
     });
     let replicates = needed.max().unwrap_or(0);
     Size {
-        replicates: replicates.max(FEWEST_REPLICATES as u64).min(most) as u32,
+        replicates: replicates.max(FEWEST_PLANNED).min(most) as u32,
+        most: most as u32,
         shape,
     }
 }
 
 /// By how much replicates must grow.
 fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) -> u64 {
-    let samples = || checks.iter().map(|c| Sample::of_layers(pilot, &c.layers));
+    let samples = || {
+        checks
+            .iter()
+            .map(|c| Sample::of_layers(pilot, &c.layers, 0))
+    };
     // What is not a number stays so with more paths.
     let seen = samples().filter(|s| s.contributions > 0 && s.invalid.pixels() == 0);
     let replicates = u64::from(PILOT_REPLICATES);
@@ -121,7 +137,8 @@ fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) 
             .next_power_of_two()
     };
     let for_seen = seen.map(wanted).max().unwrap_or(1);
-    let most_for_seen =
-        (demand.most_paths / (FEWEST_REPLICATES as u64 * shape.paths())).next_power_of_two();
+    let most_for_seen = (demand.most_paths / (FEWEST_PLANNED * shape.paths()))
+        .max(1)
+        .next_power_of_two();
     for_seen.min(most_for_seen).min(1024)
 }

@@ -3,6 +3,7 @@
 use nephroid_analytic::camera::Bounded;
 
 use super::effort::Effort;
+use crate::judge::heavy::TailIndex;
 use crate::judge::hypotheses::Levels;
 use crate::judge::verdict::{Finding, exit_code};
 
@@ -16,6 +17,8 @@ pub const WHOLE_IMAGE: &str = "image";
 pub struct Verdict {
     /// The scene's name.
     pub scene: String,
+    /// How the scene was changed; `None` if it was not.
+    pub variation: Option<String>,
     /// The integrator's name.
     pub integrator: String,
     /// The path class, or `all` for the sum of those claimed.
@@ -34,8 +37,12 @@ pub struct Verdict {
     pub levels: Levels,
     /// Angle [rad] or radius [m] of the mollifier (of the first iteration); `None` for what is not regularized.
     pub bandwidth: Option<f64>,
+    /// Tail index of the replicates' largest pixels, where there are enough.
+    pub tail: Option<TailIndex>,
     /// Independent repetitions.
     pub replicates: u32,
+    /// How often the growing sample was judged.
+    pub looks: u32,
     /// Paths in the final test.
     pub paths: u64,
     /// Paths that would decide, where these did not.

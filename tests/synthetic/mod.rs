@@ -52,6 +52,7 @@ pub fn sample(mean: f64, deviation: f64, replicates: usize) -> Sample {
         replicates,
         mean,
         variance: deviation * deviation,
+        skewness: 0.0,
         fewest_contributions: 1000,
         contributions: 1000 * replicates as u64,
         invalid: Invalid::default(),
@@ -59,10 +60,14 @@ pub fn sample(mean: f64, deviation: f64, replicates: usize) -> Sample {
     }
 }
 
-fn of_values(values: &[f64]) -> Sample {
+/// The sample of some replicates.
+pub fn of_values(values: &[f64]) -> Sample {
     let (mean, variance) = moments(values);
+    let third = values.iter().map(|v| (v - mean) * (v - mean) * (v - mean));
+    let third = third.sum::<f64>() / values.len() as f64;
     Sample {
         variance,
+        skewness: third / (variance * variance.sqrt()),
         ..sample(mean, 0.0, values.len())
     }
 }

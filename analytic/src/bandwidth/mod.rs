@@ -192,8 +192,9 @@ pub struct Moments {
     pub second_moment: Bounded,
 }
 
-/// Bandwidths smaller than this drown in the rounding of the scene's coordinates.
-pub const SMALLEST_BANDWIDTH: f64 = 1e-7;
+/// Smaller bandwidths are 6 digits from the rounding of the scene's coordinates: where a border cuts the kernel, the bound says
+/// what is left.
+pub const SMALLEST_BANDWIDTH: f64 = 1e-9;
 /// The largest radius [m].
 pub const LARGEST_RADIUS: f64 = 1e6;
 /// The longest schedule.

@@ -13,6 +13,8 @@ pub struct ConicMirror {
     shape: Shape,
     intensity: Enclosure,
     reflectance: Enclosure,
+    /// How far the rim is below the image focus, where there is one: above it, this is negative.
+    rim_below_image: Option<Enclosure>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +26,7 @@ enum Shape {
 }
 
 impl ConicMirror {
-    /// `a`, `e`, `delta` or `A`, `e`, `zr`; and `I`, `R`.
+    /// `a`, `e`, `delta` or `A`, `e`, `zr`; and `I`, `R`; and, if the mirror ends at a rim, `rim_below_image`.
     pub fn read(p: &dyn Source) -> Option<Self> {
         let e = p.number("e")?;
         Some(ConicMirror {
@@ -35,6 +37,7 @@ impl ConicMirror {
             },
             intensity: p.number("I")?,
             reflectance: p.number("R")?,
+            rim_below_image: p.number("rim_below_image"),
         })
     }
 
@@ -51,12 +54,12 @@ impl ConicMirror {
     pub fn caustic_enclosed(&self, x: Point) -> Bundle {
         let one = Enclosure::ONE;
         let plan = plan_squared(x.x, x.y);
-        let (g, ratio, lit);
+        let (g, ratio, r2, mut lit);
         match self.shape {
             Shape::Ellipsoid([a, e, delta]) => {
                 g = delta.abs();
                 let distance = (plan + g.squared()).sqrt();
-                let r2 = a * (one - e) * (one + e) / (one - e * (g / distance));
+                r2 = a * (one - e) * (one + e) / (one - e * (g / distance));
                 ratio = r2 / (Enclosure::TWO * a - r2);
                 // Below the focus the receiver must be in front of the mirror.
                 lit = match delta.sign() {
@@ -68,12 +71,20 @@ impl ConicMirror {
             Shape::Hyperboloid([a, e, z]) => {
                 g = z + a * e;
                 let distance = (plan + g.squared()).sqrt();
-                let r2 = a * (e - one) * (e + one) / (one + e * (g / distance));
+                r2 = a * (e - one) * (e + one) / (one + e * (g / distance));
                 ratio = r2 / (r2 + Enclosure::TWO * a);
                 lit = Lit::where_positive(g).and(Lit::where_positive(distance - r2));
             }
         }
         let squared = plan + g.squared();
+        if let Some(rim) = self.rim_below_image {
+            // How far the mirror point is above the image, or below it on a hyperboloid.
+            let reach = r2 * g / squared.sqrt();
+            lit = lit.and(match self.shape {
+                Shape::Ellipsoid(_) => Lit::where_not_negative(reach + rim),
+                Shape::Hyperboloid(_) => Lit::where_not_negative(reach - rim),
+            });
+        }
         let e =
             self.intensity * self.reflectance * ratio.squared() * g / (squared * squared.sqrt());
         Bundle::single(e, lit)

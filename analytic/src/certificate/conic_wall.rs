@@ -92,25 +92,53 @@ pub fn caustic_enclosed(wall: &ConicWall<Enclosure>, x: Enclosure, y: Enclosure)
     bundle
 }
 
+/// The irradiance by the ray that is reflected at θ, with the sign of W; with a slope for the mean value form.
+fn irradiance<S: Scalar>(
+    lift: impl Fn(Enclosure) -> S,
+    wall: &ConicWall<Enclosure>,
+    [a, b]: [Plan; 2],
+    theta: S,
+) -> S {
+    let (one, two) = (S::ONE, S::TWO);
+    let (p, e, h) = (
+        lift(wall.parameter),
+        lift(wall.eccentricity),
+        lift(wall.light.z),
+    );
+    let (c, s) = (theta.cos(), theta.sin());
+    let delta = one + e * c;
+    let r = p / delta;
+    let to = |(x, y): Plan| (lift(x) - r * c, lift(y) - r * s);
+    let (u, v) = (to(a), to(b));
+    let length = |(x, y): (S, S)| (x.squared() + y.squared()).sqrt();
+    let (s1, s2) = (length(u), length(v));
+    let squared_norm = one + two * e * c + e.squared();
+    // m cos i.
+    let front = -(u.0 * (c + e) + u.1 * s) / s1;
+    let curvature = delta.squared() * delta / (p * squared_norm);
+    let sum = s1 + s2;
+    let spread = sum - two * s1 * s2 * curvature / front;
+    let squared = sum.squared() + h.squared();
+    lift(wall.intensity * wall.reflectance) * h * sum / (squared * squared.sqrt() * spread)
+}
+
 fn ray(wall: &ConicWall<Enclosure>, a: Plan, b: Plan, theta: Enclosure) -> (Enclosure, Lit) {
     let (one, two) = (Enclosure::ONE, Enclosure::TWO);
     let (p, e, h) = (wall.parameter, wall.eccentricity, wall.light.z);
+    let middle = Enclosure::point(theta.middle());
+    let over = irradiance(Jet::constant, wall, [a, b], Jet::input(theta, 0, one));
+    let there = irradiance(|x| x, wall, [a, b], middle);
+    let mean = there + over.slopes[0] * (theta - middle);
+    let irradiance = mean.intersection(over.value).unwrap_or(over.value).abs();
     let (c, s) = (theta.cos(), theta.sin());
     let delta = one + e * c;
     let r = p / delta;
     let q = (r * c, r * s);
     let normal = (-(c + e), -s);
-    let m = (one + two * e * c + e.squared()).sqrt();
     let (u, v) = ((a.0 - q.0, a.1 - q.1), (b.0 - q.0, b.1 - q.1));
     let (s1, s2) = (plan_squared(u.0, u.1).sqrt(), plan_squared(v.0, v.1).sqrt());
     let (front, back) = (dot(u, normal), dot(v, normal));
-    let cosine = front / (s1 * m);
-    let curvature = delta.squared() * delta / (p * m.squared() * m);
     let sum = s1 + s2;
-    let spread = sum - two * s1 * s2 * curvature / cosine;
-    let squared = sum.squared() + h.squared();
-    let irradiance =
-        wall.intensity * wall.reflectance * h * sum / (squared * squared.sqrt() * spread.abs());
     // The second meeting.
     let w = (v.0 / s2, v.1 / s2);
     let tau = -two * (dot(q, w) + e * w.0 * r) / (one - (e * w.0).squared());

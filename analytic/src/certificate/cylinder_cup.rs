@@ -7,8 +7,9 @@
 //! τ = x cos θ + y sin θ + a cos φ,     E = sin ε E0 R^k a cos φ/|(2k - 1) a cos φ - 2kτ|.
 //! ```
 //!
-//! The first hit is (τ + (k - 1) 2a cos φ) tan ε high. Point lights are in [`lamp`], what a camera sees in [`eye`].
+//! The first hit is (τ + (k - 1) 2a cos φ) tan ε high. Point lights are in [`lamp`] and [`chains`], what a camera sees in [`eye`].
 
+mod chains;
 mod eye;
 mod lamp;
 
@@ -26,8 +27,8 @@ pub struct CylinderCup {
     radius: Enclosure,
     /// Height of the rim; `None` for a wall without end.
     height: Option<Enclosure>,
-    /// Half walls stand where cos φ ≥ 0, closed ones everywhere.
-    closed: bool,
+    /// The wall stands where cos φ is at least this; `None`: everywhere.
+    cos_half_arc: Option<Enclosure>,
     reflectance: Enclosure,
     light: Light,
     max_bounces: u32,
@@ -47,11 +48,18 @@ struct Beam {
 }
 
 impl CylinderCup {
-    /// `a`, `R`, `wall`, `wall_height`, `max_bounces`, and `light`, `I` or `E0`, `sin_elevation`, `cos_elevation`.
+    /// `a`, `R`, `wall` (`full`, `half`, or `arc` with `cos_half_arc`), `wall_height`, `max_bounces`, and `light`, `I`,
+    /// `light_on_wall` where it is `yes`, or `E0`, `sin_elevation`, `cos_elevation`.
     pub fn read(p: &dyn Source) -> Option<Self> {
         let radius = p.number("a")?;
         let light = if p.has("light") {
-            Light::Lamp(Lamp::new(radius, p.point("light")?, p.number("I")?)?)
+            let on_wall = p.text("light_on_wall", &[]).is_some_and(|t| t == "yes");
+            Light::Lamp(Lamp::new(
+                radius,
+                p.point("light")?,
+                p.number("I")?,
+                on_wall,
+            )?)
         } else {
             let sin_elevation = p.number("sin_elevation")?;
             Light::Beam(Beam {
@@ -66,9 +74,10 @@ impl CylinderCup {
                 "unbounded" => None,
                 _ => Some(p.number("wall_height")?),
             },
-            closed: match p.text("wall", &[])?.as_str() {
-                "full" => true,
-                "half" => false,
+            cos_half_arc: match p.text("wall", &[])?.as_str() {
+                "full" => None,
+                "half" => Some(Enclosure::ZERO),
+                "arc" => Some(p.number("cos_half_arc")?),
                 _ => return None,
             },
             reflectance: p.number("R")?,
@@ -84,11 +93,8 @@ impl CylinderCup {
 
     /// Whether the wall stands at the angle with this cosine.
     fn covers(&self, cosine: Enclosure) -> Lit {
-        if self.closed {
-            Lit::Yes
-        } else {
-            Lit::where_not_negative(cosine)
-        }
+        self.cos_half_arc
+            .map_or(Lit::Yes, |end| Lit::where_not_negative(cosine - end))
     }
 
     /// Whether the wall reaches up to a height.
@@ -172,11 +178,7 @@ impl CylinderCup {
             Some(h) => Lit::where_not_negative(first + chord * beam.slope - h),
             None => Lit::No,
         };
-        let enters = if self.closed {
-            over
-        } else {
-            Lit::where_positive(cosine).or(over)
-        };
+        let enters = self.covers(-cosine).inverted().or(over);
         let mut lit = enters
             .and(Lit::where_positive(cosine))
             .and(self.reaches(first))
@@ -210,11 +212,8 @@ impl CylinderCup {
             Light::Lamp(lamp) => {
                 let (e, lit) = lamp.direct(x);
                 // Nothing stands between two points inside the circle.
-                let inside = match self.holds(x) {
-                    Lit::Yes => Lit::Yes,
-                    _ => Lit::Undecided,
-                };
-                sum.add(e, lit.and(inside));
+                let free = self.holds(x).or(self.hides_lamp(lamp, x).inverted());
+                sum.add(e, lit.and(free));
             }
         }
         sum
@@ -227,7 +226,7 @@ impl CylinderCup {
         let half = squared.sqrt();
         let by = |wall_x: Enclosure| {
             Lit::where_positive(x.x - wall_x)
-                .and(self.covers(wall_x))
+                .and(self.covers(wall_x / a))
                 .and(self.reaches((x.x - wall_x) * beam.slope))
         };
         Lit::where_positive(squared).and(by(half).or(by(-half)))
@@ -254,7 +253,7 @@ impl Flatland {
             cup: CylinderCup {
                 radius: p.number("a")?,
                 height: None,
-                closed: false,
+                cos_half_arc: Some(Enclosure::ZERO),
                 reflectance: p.number("R")?,
                 light: Light::Beam(beam),
                 max_bounces: 1,

@@ -24,7 +24,7 @@ enum Light {
 }
 
 impl Paraboloid {
-    /// With `light`: `f`, `I`, `R`, `zr`, `mirror_radius`; without: `f`, `E0`, `R`, `c`, `r0`, `r1`.
+    /// With `light`: `f`, `I`, `R`, `zr`, `mirror_radius` and, if there is a hole, `r0`; without: `f`, `E0`, `R`, `c`, `r0`, `r1`.
     pub fn read(p: &dyn Source) -> Option<Self> {
         let (focal_length, reflectance) = (p.number("f")?, p.number("R")?);
         Some(if p.has("light") {
@@ -33,7 +33,7 @@ impl Paraboloid {
                 reflectance,
                 light: Light::Focus(p.number("I")?),
                 height: p.number("zr")?,
-                inner: None,
+                inner: p.number("r0").filter(|r| *r != Enclosure::ZERO),
                 outer: p.number("mirror_radius")?,
             }
         } else {

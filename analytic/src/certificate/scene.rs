@@ -18,9 +18,12 @@ use crate::certificate::radiometry::{Bundle, Point};
 use crate::certificate::source::Source;
 use crate::certificate::sphere_mirror::SphereMirror;
 use crate::certificate::stigmatic_refractors::StigmaticRefractor;
+use crate::certificate::vertical_walls::{self, GlassColumn};
 use crate::certificate::water_waves::WaterWaves;
-use crate::certificate::{Certified, Lit};
+use crate::certificate::{Certified, Lit, conic_wall, glass_pillar, pillar};
 use crate::enclosure::{Enclosure, decided};
+use crate::kinds::conic_wall::ConicWall;
+use crate::kinds::pillar::Pillar;
 use crate::scalar::Scalar;
 use crate::vector::vec3;
 
@@ -65,6 +68,9 @@ enum Kind {
     SphereMirror(SphereMirror),
     GlassSphere(GlassSphere, Vec<u32>),
     WaterWaves(WaterWaves),
+    Pillar(Pillar<Enclosure>),
+    ConicWall(ConicWall<Enclosure>),
+    GlassPillar(GlassColumn),
 }
 
 impl Scene {
@@ -88,6 +94,9 @@ impl Scene {
                 let sphere = GlassSphere::read(p)?;
                 Kind::GlassSphere(sphere, vec![sphere.usual_interactions()])
             }
+            "pillar" => Kind::Pillar(vertical_walls::pillar(p)?),
+            "conic-wall" => Kind::ConicWall(vertical_walls::conic_wall(p)?),
+            "glass-pillar" => Kind::GlassPillar(GlassColumn::read(p)?),
             "water-waves" => Kind::WaterWaves(WaterWaves::read(p)?),
             "flat-interface" => Kind::FlatInterface(FlatInterface::read(p)?),
             "glass-slab" => Kind::GlassSlab(GlassSlab::read(p)?),
@@ -114,9 +123,11 @@ impl Scene {
             further: vec![],
         };
         Some(match &self.kind {
-            Kind::Floor(_) | Kind::Sphere(_) | Kind::Furnace(..) | Kind::Flatland(_) => {
-                return None;
-            }
+            Kind::Sphere(_) | Kind::Furnace(..) | Kind::Flatland(_) => return None,
+            Kind::Floor(f) => Light {
+                direct: Some(f.direct_enclosed(floor)),
+                ..Light::default()
+            },
             Kind::CylinderCup(cup) => Light {
                 direct: Some(cup.direct_enclosed(floor)),
                 classes: bounces(cup.orders(), |k| cup.caustic_enclosed(floor, k)),
@@ -160,6 +171,21 @@ impl Scene {
                 further: vec![],
             },
             Kind::WaterWaves(water) => one(None, water.caustic_enclosed(x)),
+            Kind::Pillar(p) => one(
+                Some(pillar::direct_enclosed(p, x.x, x.y)),
+                pillar::caustic_enclosed(p, x.x, x.y),
+            ),
+            Kind::ConicWall(wall) => one(
+                Some(conic_wall::direct_enclosed(wall, x.x, x.y)),
+                conic_wall::caustic_enclosed(wall, x.x, x.y),
+            ),
+            Kind::GlassPillar(column) => Light {
+                direct: Some(glass_pillar::direct_enclosed(&column.pillar, x.x, x.y)),
+                classes: bounces(column.orders, |m| {
+                    glass_pillar::caustic_enclosed(&column.pillar, x.x, x.y, m)
+                }),
+                further: vec![],
+            },
             Kind::SphereMirror(mirror) => {
                 one(Some(mirror.direct_enclosed(x)), mirror.caustic_enclosed(x))
             }

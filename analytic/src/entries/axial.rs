@@ -55,7 +55,7 @@ impl AxialLight {
         if marginal {
             e.error += lost;
         }
-        PointTruth::regular(PathClass::LDE, e)
+        PointTruth::new(PathClass::LDE, e)
     }
 
     pub(super) fn bundle(&self, floor: &Floor) -> Arc<dyn Bundle> {

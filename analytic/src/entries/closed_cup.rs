@@ -10,6 +10,7 @@ use crate::flux::direct::FloorLight;
 use crate::flux::{Bundle, MARGINS};
 use crate::kinds::cylinder_cup::CylinderCup;
 use crate::kinds::cylinder_cup::beam_bundle::BeamRays;
+use crate::kinds::singularity::Singularity;
 use crate::scene::{ClosedCupScene, Family, Floor};
 
 #[derive(Debug)]
@@ -55,14 +56,17 @@ impl ClosedCup {
 impl Form for ClosedCup {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let point = |&class: &PathClass| match class.light.len() as u32 {
-            0 => PointTruth::regular(class, self.cup.direct(x, y)),
-            k => PointTruth {
-                class,
-                irradiance: self.cup.caustic(x, y, k),
-                singularity: self.cup.singularity(x, y, k),
-            },
+            0 => PointTruth::new(class, self.cup.direct(x, y)),
+            k => PointTruth::new(class, self.cup.caustic(x, y, k)),
         };
         self.classes.iter().map(point).collect()
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        match self.classes.get(index)?.light.len() as u32 {
+            0 => None,
+            k => self.cup.singularity(x, y, k),
+        }
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -1,6 +1,6 @@
 //! A concave spherical cap over the floor, seen from below its rim.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use libm::{cos, tan};
 
@@ -9,7 +9,8 @@ use crate::class::PathClass;
 use crate::flux::direct::FloorLight;
 use crate::flux::{Bundle, MARGINS, Ray};
 use crate::kinds::diffuse;
-use crate::kinds::sphere_mirror::{Light, Side, SphereMirror};
+use crate::kinds::singularity::Singularity;
+use crate::kinds::sphere_mirror::{Light, Side, SphereCaustic, SphereMirror};
 use crate::scene::{ConcaveSphereScene, Floor};
 use crate::vector::{Vec3, vec3};
 
@@ -20,6 +21,8 @@ struct Cap {
     intensity: f64,
     half_angle: f64,
     floor: Floor,
+    /// Made at the first question for a singularity.
+    folds: OnceLock<SphereCaustic>,
 }
 
 pub(super) fn form(scene: &ConcaveSphereScene) -> impl Form + use<> {
@@ -44,6 +47,7 @@ pub(super) fn form(scene: &ConcaveSphereScene) -> impl Form + use<> {
         intensity,
         half_angle,
         floor: scene.floor.clone(),
+        folds: OnceLock::new(),
     }
 }
 
@@ -51,16 +55,17 @@ impl Form for Cap {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let point = vec3(x, y, 0.0);
         vec![
-            PointTruth::regular(
+            PointTruth::new(
                 PathClass::LDE,
                 diffuse::direct(self.light, self.intensity, point),
             ),
-            PointTruth {
-                class: PathClass::LSDE,
-                irradiance: self.mirror.caustic(point),
-                singularity: self.mirror.singularity(point),
-            },
+            PointTruth::new(PathClass::LSDE, self.mirror.caustic(point)),
         ]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        let folds = self.folds.get_or_init(|| SphereCaustic::new(&self.mirror));
+        (index == 1).then(|| folds.nearest(vec3(x, y, 0.0)))?
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -11,6 +11,7 @@ use crate::class::PathClass;
 use crate::flux::direct::FloorLight;
 use crate::flux::{Bundle, MARGINS, Ray};
 use crate::kinds::conic_mirrors::{Ellipsoid, Hyperboloid, Root};
+use crate::kinds::singularity::Singularity;
 use crate::kinds::{Estimate, rounding_error};
 use crate::scene::{Conic, ConicMirrorsScene, Floor};
 
@@ -98,18 +99,18 @@ impl Mirror {
 impl Form for Mirror {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let (rx, ry) = (x - self.conic.center[0], y - self.conic.center[1]);
-        let singularity = match &self.shape {
-            Shape::Ellipsoid(m) => m.singularity(rx, ry),
-            Shape::Hyperboloid(_) => None,
-        };
         vec![
             self.direct.at(x, y),
-            PointTruth {
-                class: PathClass::LSDE,
-                irradiance: self.caustic(rx, ry),
-                singularity,
-            },
+            PointTruth::new(PathClass::LSDE, self.caustic(rx, ry)),
         ]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        let (rx, ry) = (x - self.conic.center[0], y - self.conic.center[1]);
+        match &self.shape {
+            Shape::Ellipsoid(m) if index == 1 => m.singularity(rx, ry),
+            _ => None,
+        }
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -8,6 +8,7 @@ use crate::flux::Bundle;
 use crate::kinds::conic_wall::ConicWall;
 use crate::kinds::conic_wall::bundle::{ConicPart, ConicRays};
 use crate::kinds::open_floor::{FloorLight, OpenFloor};
+use crate::kinds::singularity::Singularity;
 use crate::scene::{ConicWallScene, Floor};
 use crate::vector::Vec3;
 
@@ -39,13 +40,13 @@ pub(super) fn form(scene: &ConicWallScene) -> impl Form + use<> {
 impl Form for Wall {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         vec![
-            PointTruth::regular(PathClass::LDE, self.form.direct(x, y)),
-            PointTruth {
-                class: PathClass::LSDE,
-                irradiance: self.form.caustic(x, y),
-                singularity: self.form.singularity(x, y),
-            },
+            PointTruth::new(PathClass::LDE, self.form.direct(x, y)),
+            PointTruth::new(PathClass::LSDE, self.form.caustic(x, y)),
         ]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        (index == 1).then(|| self.form.singularity(x, y))?
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -54,8 +54,8 @@ impl Form for Ball {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let point = vec3(x, y, 0.0);
         vec![
-            PointTruth::regular(PathClass::LDE, self.mirror.direct(point)),
-            PointTruth::regular(PathClass::LSDE, self.mirror.caustic(point)),
+            PointTruth::new(PathClass::LDE, self.mirror.direct(point)),
+            PointTruth::new(PathClass::LSDE, self.mirror.caustic(point)),
         ]
     }
 

@@ -12,17 +12,17 @@ pub(super) fn form(scene: &CylinderCupScene) -> impl Form + use<> {
 
 impl Form for CylinderCup<f64> {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
+        vec![
+            PointTruth::new(PathClass::LDE, self.direct(x, y)),
+            PointTruth::new(PathClass::LSDE, self.caustic(x, y, 1)),
+        ]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
         let fold = |distance| Singularity {
             kind: SingularityKind::Fold,
             distance,
         };
-        vec![
-            PointTruth::regular(PathClass::LDE, self.direct(x, y)),
-            PointTruth {
-                class: PathClass::LSDE,
-                irradiance: self.caustic(x, y, 1),
-                singularity: self.distance_to_fold(x, y, 1).map(fold),
-            },
-        ]
+        (index == 1).then(|| self.distance_to_fold(x, y, 1).map(fold))?
     }
 }

@@ -8,6 +8,7 @@ use crate::flux::Bundle;
 use crate::kinds::cylinder_cup::CylinderCup;
 use crate::kinds::cylinder_cup::bundle::{LampPart, LampRays};
 use crate::kinds::open_floor::{FloorLight, OpenFloor};
+use crate::kinds::singularity::Singularity;
 use crate::scene::{CylinderLampScene, Floor};
 
 #[derive(Debug)]
@@ -37,13 +38,13 @@ pub(super) fn form(scene: &CylinderLampScene) -> impl Form + use<> {
 impl Form for CylinderLamp {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         vec![
-            PointTruth::regular(PathClass::LDE, self.cup.direct(x, y)),
-            PointTruth {
-                class: PathClass::LSDE,
-                irradiance: self.cup.caustic(x, y, 1),
-                singularity: self.cup.singularity(x, y, 1),
-            },
+            PointTruth::new(PathClass::LDE, self.cup.direct(x, y)),
+            PointTruth::new(PathClass::LSDE, self.cup.caustic(x, y, 1)),
         ]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        (index == 1).then(|| self.cup.singularity(x, y, 1))?
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

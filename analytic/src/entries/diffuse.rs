@@ -22,6 +22,6 @@ pub(super) fn form(scene: &DiffuseScene) -> impl Form + use<> {
 impl Form for Direct {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let direct = diffuse::direct(self.light, self.intensity, vec3(x, y, 0.0));
-        vec![PointTruth::regular(PathClass::LDE, direct)]
+        vec![PointTruth::new(PathClass::LDE, direct)]
     }
 }

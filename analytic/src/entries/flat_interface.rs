@@ -11,6 +11,6 @@ pub(super) fn form(scene: &FlatInterfaceScene) -> impl Form + use<> {
 
 impl Form for FlatInterface<f64> {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
-        vec![PointTruth::regular(PathClass::LSDE, self.caustic(x, y))]
+        vec![PointTruth::new(PathClass::LSDE, self.caustic(x, y))]
     }
 }

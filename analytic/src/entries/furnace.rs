@@ -82,7 +82,7 @@ impl WallTruth {
             } else {
                 self.sphere.bounce(k)
             };
-            PointTruth::regular(class, irradiance)
+            PointTruth::new(class, irradiance)
         };
         (0..).zip(self.classes).map(light).collect()
     }

@@ -8,6 +8,7 @@ use crate::flux::Bundle;
 use crate::kinds::glass_pillar::GlassPillar;
 use crate::kinds::glass_pillar::bundle::{GlassPart, GlassRays};
 use crate::kinds::open_floor::{FloorLight, OpenFloor};
+use crate::kinds::singularity::Singularity;
 use crate::scene::{Family, Floor, GlassPillarScene};
 
 #[derive(Debug)]
@@ -29,14 +30,18 @@ impl Form for Pillar {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let form = &self.form;
         let class = |(interactions, &class): (u32, &PathClass)| match interactions {
-            0 => PointTruth::regular(class, form.direct(x, y)),
-            m => PointTruth {
-                class,
-                irradiance: form.caustic(x, y, m),
-                singularity: form.singularity(x, y, m),
-            },
+            0 => PointTruth::new(class, form.direct(x, y)),
+            m => PointTruth::new(class, form.caustic(x, y, m)),
         };
         (0..).zip(self.classes).map(class).collect()
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        match index {
+            0 => None,
+            m if m < self.classes.len() => self.form.singularity(x, y, m as u32),
+            _ => None,
+        }
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

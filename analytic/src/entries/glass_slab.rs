@@ -32,7 +32,7 @@ impl Form for Slab {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         (0..)
             .zip(self.scene.classes())
-            .map(|(order, &class)| PointTruth::regular(class, self.form.caustic(x, y, order)))
+            .map(|(order, &class)| PointTruth::new(class, self.form.caustic(x, y, order)))
             .collect()
     }
 

@@ -9,6 +9,7 @@ use super::{Form, PointTruth};
 use crate::class::PathClass;
 use crate::flux::{Bundle, MARGINS, Ray};
 use crate::kinds::glass_sphere::GlassSphere;
+use crate::kinds::singularity::Singularity;
 use crate::kinds::{Estimate, rounding_error};
 use crate::scene::{Family, Floor, GlassSphereScene};
 
@@ -70,14 +71,18 @@ impl Form for Ball {
         self.classes
             .iter()
             .map(|class| match interactions(class) {
-                0 => PointTruth::regular(*class, self.direct(rho, size)),
-                m => PointTruth {
-                    class: *class,
-                    irradiance: self.form.caustic(rho, m).displaced(relative),
-                    singularity: self.form.singularity(rho, m),
-                },
+                0 => PointTruth::new(*class, self.direct(rho, size)),
+                m => PointTruth::new(*class, self.form.caustic(rho, m).displaced(relative)),
             })
             .collect()
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        let [cx, cy] = self.center;
+        match interactions(self.classes.get(index)?) {
+            0 => None,
+            m => self.form.singularity(hypot(x - cx, y - cy), m),
+        }
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -45,8 +45,6 @@ pub struct PointTruth {
     pub class: PathClass,
     /// Irradiance of the floor, with error bound and number of roots [W/m²].
     pub irradiance: Estimate<f64>,
-    /// The nearest singularity of the class's caustic; `None` where there is none.
-    pub singularity: Option<Singularity<f64>>,
 }
 
 /// Whether a point's irradiance is a number.
@@ -72,25 +70,14 @@ impl State {
 }
 
 impl PointTruth {
-    /// Whether the irradiance is a number.
-    pub fn state(&self) -> State {
-        let e = &self.irradiance;
-        if e.value.is_finite() && e.error.is_finite() {
-            return State::Regular;
-        }
-        match self.singularity {
-            Some(s) if s.kind == SingularityKind::PointFocus => State::Degenerate,
-            _ => State::Singular,
-        }
+    /// The light of a class.
+    pub const fn new(class: PathClass, irradiance: Estimate<f64>) -> Self {
+        PointTruth { class, irradiance }
     }
 
-    /// Light of a class without a singularity.
-    pub const fn regular(class: PathClass, irradiance: Estimate<f64>) -> Self {
-        PointTruth {
-            class,
-            irradiance,
-            singularity: None,
-        }
+    /// Whether value and bound are numbers.
+    pub const fn is_finite(&self) -> bool {
+        self.irradiance.value.is_finite() && self.irradiance.error.is_finite()
     }
 }
 
@@ -98,6 +85,12 @@ impl PointTruth {
 pub trait Form: Debug + Send + Sync {
     /// The light at the floor point (x, y, 0), per class that ends there, in the order of the entry's classes.
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth>;
+
+    /// The singularity nearest to (x, y, 0) of the class with position `index` in [`Self::at`]; `None` where there is none.
+    /// Apart from the light, which costs a hundredth of it.
+    fn singularity(&self, _x: f64, _y: f64, _index: usize) -> Option<Singularity<f64>> {
+        None
+    }
 
     /// The light of each of the entry's classes as bundles of rays that land on the floor and are seen from there
     /// directly, in the order of the classes. `None` where the pixels have a form of their own.
@@ -169,5 +162,22 @@ impl FloorTruth {
     /// The light at the floor point (x, y, 0), per class.
     pub fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         self.form.at(x, y)
+    }
+
+    /// The singularity nearest to the floor point (x, y, 0) of the class with position `index` in [`Self::at`]; `None` where
+    /// there is none.
+    pub fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        self.form.singularity(x, y, index)
+    }
+
+    /// Whether the irradiance of a class is a number at (x, y), where `light` is what [`Self::at`] tells at `index`.
+    pub fn state(&self, x: f64, y: f64, index: usize, light: &PointTruth) -> State {
+        if light.is_finite() {
+            return State::Regular;
+        }
+        match self.singularity(x, y, index) {
+            Some(s) if s.kind == SingularityKind::PointFocus => State::Degenerate,
+            _ => State::Singular,
+        }
     }
 }

@@ -42,7 +42,7 @@ impl Form for Dish {
         let [ax, ay] = self.direct.axis;
         vec![
             self.direct.at(x, y),
-            PointTruth::regular(PathClass::LSDE, self.mirror.caustic(x - ax, y - ay)),
+            PointTruth::new(PathClass::LSDE, self.mirror.caustic(x - ax, y - ay)),
         ]
     }
 

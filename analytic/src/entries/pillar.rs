@@ -36,8 +36,8 @@ pub(super) fn form(scene: &PillarScene) -> impl Form + use<> {
 impl Form for MirrorPillar {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         vec![
-            PointTruth::regular(PathClass::LDE, self.form.direct(x, y)),
-            PointTruth::regular(PathClass::LSDE, self.form.caustic(x, y)),
+            PointTruth::new(PathClass::LDE, self.form.direct(x, y)),
+            PointTruth::new(PathClass::LSDE, self.form.caustic(x, y)),
         ]
     }
 

@@ -44,7 +44,7 @@ impl Form for Corner {
                 0 => self.form.direct(x, y),
                 k => self.form.caustic(x, y, k),
             };
-            PointTruth::regular(class, irradiance)
+            PointTruth::new(class, irradiance)
         };
         (0..).zip(self.classes).map(class).collect()
     }

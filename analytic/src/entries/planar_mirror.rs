@@ -14,8 +14,8 @@ impl Form for PlanarMirror<f64> {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let point = vec3(x, y, 0.0);
         vec![
-            PointTruth::regular(PathClass::LDE, self.direct(point)),
-            PointTruth::regular(PathClass::LSDE, self.caustic(point)),
+            PointTruth::new(PathClass::LDE, self.direct(point)),
+            PointTruth::new(PathClass::LSDE, self.caustic(point)),
         ]
     }
 }

@@ -8,6 +8,7 @@ use libm::{cos, hypot, sin};
 use super::{Form, PointTruth};
 use crate::class::PathClass;
 use crate::flux::{Bundle, MARGINS, Ray};
+use crate::kinds::singularity::Singularity;
 use crate::kinds::stigmatic_refractors::{Front, StigmaticRefractor};
 use crate::kinds::{Estimate, rounding_error};
 use crate::scene::StigmaticRefractorsScene;
@@ -57,11 +58,12 @@ impl Form for Lens {
         if f64::abs(plan - edge) <= rounding_error(size + edge, 0.0) && light.value.is_finite() {
             sum.error += light.value;
         }
-        vec![PointTruth {
-            class: PathClass::LSDE,
-            irradiance: sum,
-            singularity: self.form.singularity(dx, dy),
-        }]
+        vec![PointTruth::new(PathClass::LSDE, sum)]
+    }
+
+    fn singularity(&self, x: f64, y: f64, index: usize) -> Option<Singularity<f64>> {
+        let (dx, dy) = (x - self.axis[0], y - self.axis[1]);
+        (index == 0).then(|| self.form.singularity(dx, dy))?
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

@@ -19,7 +19,7 @@ impl FloorTruth {
     /// [W m^(-3/2)] for a fold, in [W/m] for a line focus, with an estimate of its error; `None` for other singularities,
     /// for none, and where the class ends (a shadow edge next to the nearest point).
     pub fn strength(&self, x: f64, y: f64, index: usize) -> Option<Bounded> {
-        let here = self.class_at(x, y, index)?.singularity?;
+        let here = self.singularity(x, y, index)?;
         let power = match here.kind {
             SingularityKind::Fold => 0.5,
             SingularityKind::LineFocus => 1.0,
@@ -28,7 +28,7 @@ impl FloorTruth {
         let [wx, wy] = self.floor.half_width;
         let size = wx.min(wy);
         let distance = |p: [f64; 2]| {
-            let s = self.class_at(p[0], p[1], index)?.singularity?;
+            let s = self.singularity(p[0], p[1], index)?;
             (s.kind == here.kind).then_some(s.distance)
         };
         // The normal: along which the distance grows, from the point itself or, if it is on the fold, from next to it.

@@ -24,7 +24,7 @@ pub(super) fn form(scene: &UnderwaterScene) -> impl Form + use<> {
 impl Form for Underwater {
     fn at(&self, x: f64, y: f64) -> Vec<PointTruth> {
         let caustic = self.form.caustic(x, y);
-        vec![PointTruth::regular(PathClass::LSDE, caustic)]
+        vec![PointTruth::new(PathClass::LSDE, caustic)]
     }
 
     fn bundles(&self) -> Option<Vec<Vec<Arc<dyn Bundle>>>> {

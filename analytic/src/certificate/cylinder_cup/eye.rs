@@ -29,7 +29,7 @@ impl CylinderCup {
         // From outside the ray comes in through the opening or over the rim.
         let entry_z = camera.z + slope * enter;
         let free = Lit::where_not_negative(entry_z).and(
-            self.covers(camera.x + enter * dx)
+            self.covers((camera.x + enter * dx) / a)
                 .and(self.reaches(entry_z))
                 .inverted(),
         );
@@ -39,7 +39,7 @@ impl CylinderCup {
             .and(inside.or(free))
             .and(Lit::where_positive(exit))
             .and(Lit::where_not_negative(hit.z))
-            .and(self.covers(hit.x))
+            .and(self.covers(hit.x / a))
             .and(self.reaches(hit.z));
         let chord = Enclosure::TWO * half;
         let (mut px, mut py, mut rest) = (hit.x, hit.y, -hit.z / slope);
@@ -48,7 +48,7 @@ impl CylinderCup {
             let normal = Enclosure::TWO * (dx * nx + dy * ny);
             (dx, dy) = (dx - normal * nx, dy - normal * ny);
             let (end_x, end_y) = (px + chord * dx, py + chord * dy);
-            let ends = Lit::where_not_negative(chord - rest).or(self.covers(end_x).inverted());
+            let ends = Lit::where_not_negative(chord - rest).or(self.covers(end_x / a).inverted());
             if ends != Lit::No {
                 arrives = arrives.and(ends);
                 return Seen {

@@ -1,4 +1,4 @@
-//! A point light in the cup, one bounce. Theory block G.
+//! A point light in the cup: one bounce inside the circle; [`super::chains`] has everything else. Theory block G.
 //!
 //! With A the light and B the receiver as complex numbers, a ray is reflected at s = a e^{iφ} where (A - s)(B - s)/s² is
 //! positive. For A and B inside the circle both factors over s have arguments within a quarter turn of π, so that it is
@@ -24,16 +24,21 @@ use crate::vector::vec3;
 /// A point light inside the circle, or exactly on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lamp {
-    at: Point,
-    intensity: Enclosure,
-    on_wall: bool,
+    pub(super) at: Point,
+    pub(super) intensity: Enclosure,
+    pub(super) on_wall: bool,
 }
 
 impl Lamp {
     /// `None` if the light may be outside.
-    pub(super) fn new(radius: Enclosure, at: Point, intensity: Enclosure) -> Option<Self> {
+    pub(super) fn new(
+        radius: Enclosure,
+        at: Point,
+        intensity: Enclosure,
+        on_wall: bool,
+    ) -> Option<Self> {
         let inside = radius.squared() - plan_squared(at.x, at.y);
-        let on_wall = inside == Enclosure::ZERO;
+        let on_wall = on_wall || inside == Enclosure::ZERO;
         (on_wall || inside.is_positive()).then_some(Lamp {
             at,
             intensity,
@@ -51,12 +56,7 @@ impl CylinderCup {
     pub(super) fn lamp_rays(&self, lamp: &Lamp, x: Point, bounces: u32) -> Bundle {
         let mut bundle = Bundle::default();
         if bounces != 1 || self.holds(x) != Lit::Yes {
-            // Behind a closed wall it is dark.
-            let dark = self.closed && self.height.is_none() && self.holds(x) == Lit::No;
-            if !dark {
-                bundle.total.add_unresolved();
-            }
-            return bundle;
+            return self.lamp_chains(lamp, x, bounces);
         }
         let a = self.radius;
         let jet = Jet::constant;

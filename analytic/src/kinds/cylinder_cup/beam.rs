@@ -18,7 +18,7 @@
 //!
 //! and q'' = 12y t² + 6(2a + 4x) t - 12y has two real zeros with product -1, hence exactly one in [-1, 1]. So q' has at
 //! most two zeros there and q at most three, each found in a bracket without trigonometry. More bounces are isolated by
-//! [`for_each_root`].
+//! [`crate::roots::for_each_root`].
 //!
 //! **Accuracy**: `Root::conditioning` times a few units of rounding; the conditioning grows like the inverse distance to
 //! the fold.
@@ -26,7 +26,7 @@
 use super::circle::LinearFamily;
 use super::fold::FoldRay;
 use super::{CylinderCup, Light, Root};
-use crate::roots::{Isolated, bracketed_from, for_each_root};
+use crate::roots::{Isolated, Sample, resolved};
 use crate::scalar::Scalar;
 use crate::scene::DirectionalLight;
 
@@ -82,11 +82,17 @@ impl<S: Scalar> Quartic<S> {
     }
 
     #[inline(always)]
-    fn derivative(&self, t: S) -> (S, S) {
+    fn derivative(&self, t: S) -> Sample<S> {
         let (y, b) = (self.y, self.cubic);
         let six = S::from_f64(6.0);
-        let second = (S::TWO * six * y * t + six * b) * t - S::TWO * six * y;
-        (self.value(t).1, second)
+        let size = S::from_f64(16.0) * y.abs()
+            + S::from_f64(3.0) * b.abs() * t.squared()
+            + self.linear.abs();
+        Sample {
+            value: self.value(t).1,
+            slope: (S::TWO * six * y * t + six * b) * t - S::TWO * six * y,
+            noise: S::from_f64(4.0) * S::EPSILON * size,
+        }
     }
 
     /// The zero of q'' in [-1, 1], in the form that does not cancel.
@@ -135,15 +141,9 @@ impl<S: Scalar> Quartic<S> {
             (inflection, S::ONE, middle, right),
         ] {
             if (at_low <= S::ZERO) != (at_high <= S::ZERO) {
-                let start = S::HALF * (low + high);
                 let rising = at_low <= S::ZERO;
-                cut(bracketed_from(
-                    |t| self.derivative(t),
-                    low,
-                    high,
-                    start,
-                    rising,
-                ));
+                let middle = S::HALF * (low + high);
+                cut(resolved(|t| self.derivative(t), low, high, middle, rising));
             }
         }
         cut(S::ONE);
@@ -153,10 +153,15 @@ impl<S: Scalar> Quartic<S> {
             if rising != (values[k + 1] <= S::ZERO) {
                 // The secant is a better start than the middle.
                 let secant = low - values[k] * (high - low) / (values[k + 1] - values[k]);
-                visit(
-                    bracketed_from(|t| self.value(t), low, high, secant, rising),
-                    false,
-                );
+                let at = |t: S| {
+                    let (value, slope) = self.value(t);
+                    Sample {
+                        value,
+                        slope,
+                        noise: self.noise(t),
+                    }
+                };
+                visit(resolved(at, low, high, secant, rising), false);
             } else if k + 1 < pieces && values[k + 1].abs() <= self.noise(high) {
                 // An extremum that touches zero: the point is on the fold.
                 visit(high, true);
@@ -204,29 +209,23 @@ impl<S: Scalar> CylinderCup<S> {
             return;
         }
         let family = self.beam_family(bounces);
-        let half_turn = S::HALF * S::PI;
-        for_each_root(
-            -half_turn,
-            half_turn,
-            |i, _| family.local(x, y, i),
-            |root| {
-                let (i, touching) = match root {
-                    Isolated::Simple(i) => (i, false),
-                    Isolated::Touching(i) => (i, true),
-                };
-                let ray = family.through(x, y, i);
-                // φ = -i.
-                self.visit_beam_root(
-                    beam,
-                    bounces,
-                    (ray.cos_i, -ray.sin_i),
-                    (ray.cos_theta, ray.sin_theta),
-                    ray.along,
-                    touching,
-                    &mut visit,
-                );
-            },
-        );
+        family.for_each_root(x, y, |root| {
+            let (i, touching) = match root {
+                Isolated::Simple(i) => (i, false),
+                Isolated::Touching(i) => (i, true),
+            };
+            let ray = family.through(x, y, i);
+            // φ = -i.
+            self.visit_beam_root(
+                beam,
+                bounces,
+                (ray.cos_i, -ray.sin_i),
+                (ray.cos_theta, ray.sin_theta),
+                ray.along,
+                touching,
+                &mut visit,
+            );
+        });
     }
 
     /// The beam's rays after k bounces: φ = -i, θ = kπ - 2k i.

@@ -11,7 +11,7 @@
 //! For parallel light and for a light on the wall both are linear in i: θ = θ0 - m i, L = a sin i, with m = 2k for the
 //! beam and m = 2k + 1 for the light on the wall. Derived here.
 
-use crate::roots::Local;
+use crate::roots::{Isolated, Local, Sample, for_each_root_of};
 use crate::scalar::Scalar;
 
 /// Rays θ = θ0 - m i, L = a sin i, |i| < π/2.
@@ -49,8 +49,8 @@ impl<S: Scalar> LinearFamily<S> {
     #[inline]
     pub fn through(&self, x: S, y: S, i: S) -> Through<S> {
         let theta = self.theta0 - self.turns * i;
-        let (cos_theta, sin_theta) = (theta.cos(), theta.sin());
-        let (cos_i, sin_i) = (i.cos(), i.sin());
+        let (sin_theta, cos_theta) = theta.sin_cos();
+        let (sin_i, cos_i) = i.sin_cos();
         let along = x * cos_theta + y * sin_theta;
         Through {
             offset: x * sin_theta - y * cos_theta - self.radius * sin_i,
@@ -63,17 +63,34 @@ impl<S: Scalar> LinearFamily<S> {
         }
     }
 
-    /// For [`crate::roots::for_each_root`]: |∂²g/∂i²| ≤ m² |p| + a.
+    /// Visits the rays through a point in ascending incidence angle.
     #[inline]
-    pub fn local(&self, x: S, y: S, i: S) -> Local<S> {
-        let ray = self.through(x, y, i);
+    pub fn for_each_root(&self, x: S, y: S, visit: impl FnMut(Isolated<S>)) {
+        let (m, a) = (self.turns, self.radius);
         let r = x.hypot(y);
-        let m = self.turns;
-        Local {
-            value: ray.offset,
-            slope: ray.spread,
-            curvature: m.squared() * r + self.radius,
-            noise: S::EPSILON * S::from_f64(4.0) * (r * (S::TWO + S::TWO * m) + self.radius),
-        }
+        let noise = S::EPSILON * S::from_f64(4.0) * (r * (S::TWO + S::TWO * m) + a);
+        let (second, third) = (m.squared() * r + a, m.squared() * m * r + a);
+        let half_turn = S::HALF * S::PI;
+        let at = |i: S| {
+            let ray = self.through(x, y, i);
+            Sample {
+                value: ray.offset,
+                slope: ray.spread,
+                noise,
+            }
+        };
+        let local = |i: S, half: S| {
+            let ray = self.through(x, y, i);
+            // ∂²g/∂i² = a sin i - m² p × d at the middle, and |∂³g/∂i³| ≤ m³ |p| + a around it.
+            let across = a * ray.sin_i;
+            let bend = across - m.squared() * (ray.offset + across);
+            Local {
+                value: ray.offset,
+                slope: ray.spread,
+                curvature: second.min(bend.abs() + half * third),
+                noise,
+            }
+        };
+        for_each_root_of(-half_turn, half_turn, at, local, visit);
     }
 }

@@ -20,7 +20,7 @@ use super::circle::LinearFamily;
 use super::fold::FoldRay;
 use super::{CylinderCup, Root, Wall};
 use crate::kinds::{Estimate, rounding_error};
-use crate::roots::{Isolated, Local, for_each_root};
+use crate::roots::{Isolated, Local, Sample, for_each_root_of};
 use crate::scalar::Scalar;
 
 /// A point light inside the circle or on the wall.
@@ -80,15 +80,22 @@ impl<S: Scalar> Lamp<S> {
         }
     }
 
-    fn ray(&self, wall: &Wall<S>, k: S, x: S, y: S, psi: S) -> Ray<S> {
+    /// The ray in the direction ψ, given by its sine and cosine, after k bounces.
+    ///
+    /// The direction is e^{iψ} (-e^{-2ii})^k, without the angle i.
+    #[inline(always)]
+    fn ray(&self, wall: &Wall<S>, bounces: u32, (x, y): (S, S), (s, c): (S, S)) -> Ray<S> {
         let a = wall.radius;
-        let (c, s) = (psi.cos(), psi.sin());
         let across = self.x * s - self.y * c;
         let ahead = self.x * c + self.y * s;
         let reach = ((a - across) * (a + across)).sqrt();
-        let theta = psi + k * (S::PI - S::TWO * across.atan2(reach));
-        let (cos_theta, sin_theta) = (theta.cos(), theta.sin());
+        let (sin_i, cos_i) = (across / a, reach / a);
+        let turn = ((sin_i - cos_i) * (sin_i + cos_i), S::TWO * sin_i * cos_i);
+        let (cos_theta, sin_theta) = (0..bounces).fold((c, s), |(c, s), _| {
+            (c * turn.0 - s * turn.1, s * turn.0 + c * turn.1)
+        });
         let along = x * cos_theta + y * sin_theta;
+        let k = S::from_f64(f64::from(bounces));
         let turning = S::ONE - S::TWO * k * ahead / reach;
         Ray {
             across,
@@ -103,22 +110,61 @@ impl<S: Scalar> Lamp<S> {
         }
     }
 
-    /// Bounds on the directions ψ ± half.
-    fn local(&self, wall: &Wall<S>, k: S, x: S, y: S, psi: S, half: S) -> Local<S> {
-        let ray = self.ray(wall, k, x, y, psi);
+    /// Visits the directions ψ of the rays through a point, of a light off the wall.
+    ///
+    /// With the ratios λ = L/C, μ = A·d(ψ)/C, θ'' = 2k λ (1 - μ²) and θ''' = 2k μ (1 - μ²)(1 + 3λ²).
+    fn for_each_direction(
+        &self,
+        wall: &Wall<S>,
+        bounces: u32,
+        (x, y): (S, S),
+        visit: impl FnMut(Isolated<S>),
+    ) {
         let (r, light, a) = (x.hypot(y), self.radius(), wall.radius);
-        let across = light.min(ray.across.abs() + light * half);
-        let ahead = light.min(ray.ahead.abs() + light * half);
-        let reach = ((a - across) * (a + across)).sqrt();
-        let turning = S::ONE + S::TWO * k * ahead / reach;
-        let rate = S::TWO * k * (across / reach) * (S::ONE + (ahead / reach).squared());
-        let angle = S::TWO + S::TWO * k * (S::TWO + light / ray.reach);
-        Local {
-            value: ray.offset,
-            slope: ray.spread,
-            curvature: r * (turning.squared() + rate) + across,
-            noise: S::EPSILON * S::from_f64(4.0) * (r * angle + light),
-        }
+        let (one, three) = (S::ONE, S::from_f64(3.0));
+        let twice = S::TWO * S::from_f64(f64::from(bounces));
+        let noise = |ray: &Ray<S>| {
+            let angle = S::TWO + twice * (S::TWO + light / ray.reach);
+            S::EPSILON * S::from_f64(4.0) * (r * angle + light)
+        };
+        let at = |psi: S| {
+            let ray = self.ray(wall, bounces, (x, y), psi.sin_cos());
+            Sample {
+                value: ray.offset,
+                slope: ray.spread,
+                noise: noise(&ray),
+            }
+        };
+        let local = |psi: S, half: S| {
+            let ray = self.ray(wall, bounces, (x, y), psi.sin_cos());
+            // Bounds on the directions ψ ± half.
+            let across = light.min(ray.across.abs() + light * half);
+            let ahead = light.min(ray.ahead.abs() + light * half);
+            let reach = ((a - across) * (a + across)).sqrt();
+            let (lambda, mu) = (across / reach, ahead / reach);
+            let turning = one + twice * mu;
+            let stretch = one + mu.squared();
+            let rate = twice * lambda * stretch;
+            let whole = r * (turning.squared() + rate) + across;
+            let third = turning * (turning.squared() + three * rate)
+                + twice * mu * stretch * (one + three * lambda.squared());
+            let bend = self.bend(&ray, twice);
+            Local {
+                value: ray.offset,
+                slope: ray.spread,
+                curvature: whole.min(bend.abs() + half * (r * third + light)),
+                noise: noise(&ray),
+            }
+        };
+        for_each_root_of(-S::PI, S::PI, at, local, visit);
+    }
+
+    /// ∂J/∂ψ = -(p × d) θ'² + (p · d) θ'' + A × d(ψ), `twice` = 2k.
+    #[inline(always)]
+    fn bend(&self, ray: &Ray<S>, twice: S) -> S {
+        let ratio = ray.ahead / ray.reach;
+        let rate = twice * (ray.across / ray.reach) * (S::ONE - ratio.squared());
+        ray.across + ray.along * rate - (ray.offset + ray.across) * ray.turning.squared()
     }
 
     /// By how much the position angle changes along a chord after the first hit: π - 2i.
@@ -146,44 +192,34 @@ impl<S: Scalar> CylinderCup<S> {
             Isolated::Touching(u) => (u, true),
         };
         if lamp.is_on(&self.wall) {
-            let family = lamp.family(&self.wall, k);
-            let half_turn = S::HALF * S::PI;
             let start = lamp.y.atan2(lamp.x) + S::PI;
-            for_each_root(
-                -half_turn,
-                half_turn,
-                |i, _| family.local(x, y, i),
-                |root| {
-                    let (i, touching) = each(root);
-                    let ray = family.through(x, y, i);
-                    let reach = self.wall.radius * ray.cos_i;
-                    let psi = start - i;
-                    let theta = (ray.cos_theta, ray.sin_theta);
-                    let leg = (S::TWO * reach, reach, ray.along, ray.spread);
-                    self.visit_lamp_root(lamp, k, psi, theta, leg, touching, bounces, &mut visit);
-                },
-            );
+            let family = lamp.family(&self.wall, k);
+            family.for_each_root(x, y, |root| {
+                let (i, touching) = each(root);
+                let ray = family.through(x, y, i);
+                let reach = self.wall.radius * ray.cos_i;
+                let psi = (start - i).sin_cos();
+                let theta = (ray.cos_theta, ray.sin_theta);
+                let leg = (S::TWO * reach, reach, ray.along, ray.spread);
+                self.visit_lamp_root(lamp, k, psi, theta, leg, touching, bounces, &mut visit);
+            });
             return;
         }
-        for_each_root(
-            -S::PI,
-            S::PI,
-            |psi, half| lamp.local(&self.wall, k, x, y, psi, half),
-            |root| {
-                let (psi, touching) = each(root);
-                let ray = lamp.ray(&self.wall, k, x, y, psi);
-                let theta = (ray.cos_theta, ray.sin_theta);
-                let leg = (ray.reach - ray.ahead, ray.reach, ray.along, ray.spread);
-                self.visit_lamp_root(lamp, k, psi, theta, leg, touching, bounces, &mut visit);
-            },
-        );
+        lamp.for_each_direction(&self.wall, bounces, (x, y), |root| {
+            let (psi, touching) = each(root);
+            let psi = psi.sin_cos();
+            let ray = lamp.ray(&self.wall, bounces, (x, y), psi);
+            let theta = (ray.cos_theta, ray.sin_theta);
+            let leg = (ray.reach - ray.ahead, ray.reach, ray.along, ray.spread);
+            self.visit_lamp_root(lamp, k, psi, theta, leg, touching, bounces, &mut visit);
+        });
     }
 
     fn visit_lamp_root(
         &self,
         lamp: &Lamp<S>,
         k: S,
-        psi: S,
+        (sin_psi, cos_psi): (S, S),
         (cos_theta, sin_theta): (S, S),
         (first, reach, along, spread): (S, S, S, S),
         touching: bool,
@@ -200,8 +236,8 @@ impl<S: Scalar> CylinderCup<S> {
         let distance = length.hypot(lamp.height);
         let flux = lamp.intensity * power(self.reflectance, bounces) * lamp.height * length;
         visit(Root {
-            cos_phi: (lamp.x + first * psi.cos()) / a,
-            sin_phi: (lamp.y + first * psi.sin()) / a,
+            cos_phi: (lamp.x + first * cos_psi) / a,
+            sin_phi: (lamp.y + first * sin_psi) / a,
             cos_theta,
             sin_theta,
             cos_incidence: reach / a,
@@ -334,7 +370,7 @@ impl CylinderCup<f64> {
                 across * (1.0 / family.turns - family.turns),
             )
         } else {
-            let ray = lamp.ray(&self.wall, k, 0.0, 0.0, parameter);
+            let ray = lamp.ray(&self.wall, bounces, (0.0, 0.0), libm::sincos(parameter));
             let theta = (ray.cos_theta, ray.sin_theta);
             let along = ray.ahead / ray.turning;
             let rate = turning_rate(k, ray.across, ray.ahead, ray.reach);
@@ -351,6 +387,7 @@ impl CylinderCup<f64> {
         };
         let mut found = None;
         let leg = (first, reach, along, 0.0);
+        let psi = libm::sincos(psi);
         self.visit_lamp_root(lamp, k, psi, theta, leg, true, bounces, &mut |root| {
             found = Some(root)
         });

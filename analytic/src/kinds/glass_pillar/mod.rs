@@ -26,7 +26,7 @@
 //!
 //! τ the plan length outside. A strip a cos i di of the side takes E0 cos ε a cos i di dz, and lands on |J| di dτ with
 //! dτ = dz/tan ε; every ray of the plan comes down from each height of entry. All roots are isolated by
-//! [`for_each_root`] from a bound of G''. J = 0 is the caustic.
+//! [`for_each_root_of`] from a bound of G''. J = 0 is the caustic.
 //!
 //! **Heights.** The ray left the side at τ tan ε > 0 and entered it at
 //!
@@ -46,7 +46,7 @@ use crate::gradient::Gradient;
 use crate::kinds::glass_sphere::{GlassSphere, Ray};
 use crate::kinds::{Estimate, power, rounding_error};
 use crate::optics::{fresnel_reflectance, fresnel_transmittance};
-use crate::roots::{Isolated, Local, for_each_root};
+use crate::roots::{Isolated, Local, Sample, for_each_root_of};
 use crate::scalar::Scalar;
 use crate::scene::{DirectionalLight, GlassCylinder};
 
@@ -208,60 +208,69 @@ impl<S: Scalar> GlassPillar<S> {
         }
     }
 
-    fn bounds(&self, interactions: u32, p: (S, S), i: S, half: S) -> Local<S> {
-        let meridian = self.meridian();
-        let ray = meridian.ray(i, interactions);
-        let (value, along) = self.impact(&ray, p);
-        let (a, reach) = (self.radius, p.0.hypot(p.1));
-        let b = meridian.bounds(i, half, interactions);
-        let rays = S::from_f64(f64::from(interactions) + 1.0);
-        Local {
-            value,
-            slope: a * ray.cos_i - ray.turn * along,
-            curvature: a * b.sine + reach * (b.turn.squared() + b.turn_1),
-            noise: S::from_f64(4.0) * S::EPSILON * (a + reach) * rays,
-        }
-    }
-
     /// Visits every ray that reaches the floor point (x, y) [m] after `interactions` ≥ 1 with a side of any height. No
     /// allocation.
     pub fn for_each_root(&self, x: S, y: S, interactions: u32, mut visit: impl FnMut(Root<S>)) {
         let quarter = S::HALF * S::PI;
         let p = self.local(x, y);
         let meridian = self.meridian();
-        for_each_root(
-            -quarter,
-            quarter,
-            |i, half| self.bounds(interactions, p, i, half),
-            |root| {
-                let (i, touching) = match root {
-                    Isolated::Simple(i) => (i, false),
-                    Isolated::Touching(i) => (i, true),
-                };
-                let ray = meridian.ray(i, interactions);
-                let (_, along) = self.impact(&ray, p);
-                let arrival = self.arrival(&ray, along, interactions);
-                if !(arrival.tau > S::ZERO && ray.cos_i > S::ZERO) {
-                    return;
-                }
-                visit(Root {
-                    incidence: i,
-                    direction: (ray.cos_d, -ray.sin_d),
-                    weight: arrival.weight,
-                    tau: arrival.tau,
-                    entry_z: arrival.entry_z,
-                    spread: arrival.spread,
-                    irradiance: arrival.irradiance,
-                    conditioning: self.conditioning(x, y, interactions, i, arrival.spread),
-                    below_top: self.height - arrival.entry_z,
-                    touching,
-                });
-            },
-        );
+        let (a, reach) = (self.radius, p.0.hypot(p.1));
+        let rays = S::from_f64(f64::from(interactions) + 1.0);
+        let noise = S::from_f64(4.0) * S::EPSILON * (a + reach) * rays;
+        let at = |i: S| {
+            let ray = meridian.ray(i, interactions);
+            let (value, along) = self.impact(&ray, p);
+            Sample {
+                value,
+                slope: a * ray.cos_i - ray.turn * along,
+                noise,
+            }
+        };
+        let local = |i: S, half: S| {
+            let ray = meridian.ray(i, interactions);
+            let (value, along) = self.impact(&ray, p);
+            let b = meridian.bounds(&ray, half, interactions);
+            let whole = a * b.sine + reach * (b.turn.squared() + b.turn_1);
+            // p × d = a sin i - G.
+            let across = a * ray.sin_i - value;
+            let bend = ray.turn.squared() * across
+                - meridian.turn_1(&ray, interactions) * along
+                - a * ray.sin_i;
+            Local {
+                value,
+                slope: a * ray.cos_i - ray.turn * along,
+                curvature: whole.min(bend.abs() + half * meridian.third(&b, reach)),
+                noise,
+            }
+        };
+        for_each_root_of(-quarter, quarter, at, local, |root| {
+            let (i, touching) = match root {
+                Isolated::Simple(i) => (i, false),
+                Isolated::Touching(i) => (i, true),
+            };
+            let ray = meridian.ray(i, interactions);
+            let (_, along) = self.impact(&ray, p);
+            let arrival = self.arrival(&ray, along, interactions);
+            if !(arrival.tau > S::ZERO && ray.cos_i > S::ZERO) {
+                return;
+            }
+            visit(Root {
+                incidence: i,
+                direction: (ray.cos_d, -ray.sin_d),
+                weight: arrival.weight,
+                tau: arrival.tau,
+                entry_z: arrival.entry_z,
+                spread: arrival.spread,
+                irradiance: arrival.irradiance,
+                conditioning: self.conditioning(x, y, interactions, &ray, arrival.spread),
+                below_top: self.height - arrival.entry_z,
+                touching,
+            });
+        });
     }
 
     /// Differentiates the irradiance along the root, di = -(∂G/∂p dp)/G'.
-    fn conditioning(&self, x: S, y: S, interactions: u32, i: S, slope: S) -> S {
+    fn conditioning(&self, x: S, y: S, interactions: u32, ray: &Ray<S>, slope: S) -> S {
         type G<S> = Gradient<S, 6>;
         let (px, py) = self.local(x, y);
         let size = self.extent(x, y);
@@ -277,12 +286,16 @@ impl<S: Scalar> GlassPillar<S> {
         };
         let p = (G::input(px, 4, size), G::input(py, 5, size));
         let meridian = pillar.meridian();
-        let mut moving = G::constant(i);
-        let (value, _) = pillar.impact(&meridian.ray(moving, interactions), p);
-        for (m, v) in moving.slopes.iter_mut().zip(value.slopes) {
-            *m = -v / slope;
+        let (sin_i, cos_i) = (ray.sin_i, ray.cos_i);
+        let fixed = (G::constant(sin_i), G::constant(cos_i));
+        let (value, _) = pillar.impact(&meridian.ray_of(fixed, interactions), p);
+        let (mut sine, mut cosine) = fixed;
+        for (k, v) in value.slopes.into_iter().enumerate() {
+            let moved = -v / slope;
+            sine.slopes[k] = cos_i * moved;
+            cosine.slopes[k] = -(sin_i * moved);
         }
-        let ray = meridian.ray(moving, interactions);
+        let ray = meridian.ray_of((sine, cosine), interactions);
         let (_, along) = pillar.impact(&ray, p);
         let arrival = pillar.arrival(&ray, along, interactions);
         arrival.irradiance.relative_change()

@@ -66,12 +66,11 @@ impl<S: Scalar> GlassSphere<S> {
         let (a, c) = (self.radius, self.receiver_z);
         let ray = self.ray(i, interactions);
         let chords = S::TWO * S::from_f64(f64::from(interactions) - 1.0);
-        // dδ'/di.
-        let turn_1 = chords * self.gap() * ray.sin_i / (ray.q.squared() * ray.q);
+        let turn_1 = self.turn_1(&ray, interactions);
         let turn = ray.turn;
         let value = a * ray.cos_i * ray.cos_d + turn * (a * ray.sin_i * ray.sin_d - c);
         let inner = a * (ray.cos_d * (turn.squared() - S::ONE) + turn_1 * ray.sin_d);
-        let b = self.bounds(i, half, interactions);
+        let b = self.bounds(&ray, half, interactions);
         let stretch = b.turn.squared() + S::ONE;
         // |d/di| of sin i [cos δ (δ'² - 1) + δ'' sin δ] and of δ'', term by term.
         let curvature = a

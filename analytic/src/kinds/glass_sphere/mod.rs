@@ -19,7 +19,7 @@
 //! ```
 //!
 //! equivalent to theory block K for m = 2 and 3, but without its poles at δ = ±π/2 and its cancellation far away. All
-//! roots are isolated by [`for_each_root`] from a bound of G''. Where G' = 0 the roots are born in pairs: the fold ring,
+//! roots are isolated by [`for_each_root_of`] from a bound of G''. Where G' = 0 the roots are born in pairs: the fold ring,
 //! the rainbow. A ring of rays that reaches ρ = 0 makes the axis a line focus. On the axis the root i = 0 alone gives
 //! E = E0 W a²/G'(0)². Derived here from flux conservation, E 2πρ dρ = E0 W 2πa² sin i cos i di.
 //!
@@ -31,7 +31,7 @@ pub mod fold;
 use crate::gradient::Gradient;
 use crate::kinds::{Estimate, rounding_error};
 use crate::optics::{fresnel_reflectance, fresnel_transmittance};
-use crate::roots::{Isolated, Local, for_each_root};
+use crate::roots::{Isolated, Local, Sample, for_each_root_of};
 use crate::scalar::Scalar;
 
 /// The most interactions with the sphere that are counted in one path.
@@ -98,23 +98,33 @@ impl<S: Scalar> GlassSphere<S> {
     /// The ray with incidence `i` after `interactions`.
     #[inline(always)]
     pub(in crate::kinds) fn ray(&self, i: S, interactions: u32) -> Ray<S> {
-        let (sin_i, cos_i) = (i.sin(), i.cos());
+        self.ray_of(i.sin_cos(), interactions)
+    }
+
+    /// As [`Self::ray`], from the sine and the cosine of the incidence.
+    ///
+    /// The direction is e^{iδ} = (-1)^m e^{2ii} (e^{-2ir})^{m-1} with n e^{ir} = q + i sin i, without any angle.
+    #[inline(always)]
+    pub(in crate::kinds) fn ray_of(&self, (sin_i, cos_i): (S, S), interactions: u32) -> Ray<S> {
         let q = (self.gap() + cos_i.squared()).sqrt();
-        let chords = S::TWO * S::from_f64(f64::from(interactions) - 1.0);
-        let r = sin_i.atan2(q);
-        let eta = S::TWO * i - chords * r;
-        let sign = if interactions.is_multiple_of(2) {
-            S::ONE
-        } else {
-            -S::ONE
-        };
+        let chords = interactions.max(1) - 1;
+        let scale = S::ONE / self.index.squared();
+        let chord = (
+            (q - sin_i) * (q + sin_i) * scale,
+            -(S::TWO * q * sin_i * scale),
+        );
+        let start = ((cos_i - sin_i) * (cos_i + sin_i), S::TWO * sin_i * cos_i);
+        let (c, s) = (0..chords).fold(start, |(c, s), _| {
+            (c * chord.0 - s * chord.1, s * chord.0 + c * chord.1)
+        });
+        let turned = chords.is_multiple_of(2);
         Ray {
             sin_i,
             cos_i,
             q,
-            cos_d: sign * eta.cos(),
-            sin_d: sign * eta.sin(),
-            turn: S::TWO - chords * (cos_i / q),
+            cos_d: if turned { -c } else { c },
+            sin_d: if turned { -s } else { s },
+            turn: S::TWO - S::TWO * S::from_f64(f64::from(chords)) * (cos_i / q),
         }
     }
 
@@ -146,46 +156,79 @@ impl<S: Scalar> GlassSphere<S> {
         (2..interactions).fold(t.squared(), |w, _| w * f)
     }
 
-    /// Bounds over the incidence angles within `half` of `i`.
+    /// Bounds over the incidence angles within `half` of that of a ray.
     ///
     /// With p = n² - sin² i, dr/di = cos i/√p falls from 1/n on the axis to 0 at grazing incidence, and
-    /// d²r/di² = -(n² - 1) sin i/p^(3/2), d³r/di³ = -(n² - 1) cos i (1/p^(3/2) + 3 sin² i/p^(5/2)).
+    /// d²r/di² = -(n² - 1) sin i/p^(3/2), d³r/di³ = -(n² - 1) cos i (1/p^(3/2) + 3 sin² i/p^(5/2)). Sine and cosine within
+    /// the range are bounded by |sin i| ± h cos i and cos i ± h |sin i|, the lower one less h²/2.
     #[inline(always)]
-    pub(in crate::kinds) fn bounds(&self, i: S, half: S, interactions: u32) -> Bounds<S> {
-        let quarter = S::HALF * S::PI;
-        let far = (i.abs() + half).min(quarter);
-        let near = (i.abs() - half).max(S::ZERO);
+    pub(in crate::kinds) fn bounds(&self, ray: &Ray<S>, half: S, interactions: u32) -> Bounds<S> {
+        let (one, zero) = (S::ONE, S::ZERO);
+        let (sine, cosine) = (ray.sin_i.abs(), ray.cos_i.max(zero));
+        let most = one.min(cosine + half * sine);
+        let least = zero.max(cosine - half * sine - S::HALF * half.squared());
         let chords = S::TWO * S::from_f64(f64::from(interactions) - 1.0);
-        let turn = |angle: S| {
-            let cosine = angle.cos();
-            (S::TWO - chords * cosine / (self.gap() + cosine.squared()).sqrt()).abs()
-        };
-        let (sine, cosine) = (far.sin(), far.cos());
-        let p = self.gap() + cosine.squared();
-        let cubed = p * p.sqrt();
-        let scale = chords * self.gap() / cubed;
+        let gap = self.gap();
+        // p where the cosine is least.
+        let p = gap + least.squared();
+        let root = p.sqrt();
+        let turn = |cosine: S, root: S| (S::TWO - chords * cosine / root).abs();
+        let sine = one.min(sine + half * cosine);
+        let scale = chords * gap / (p * root);
         Bounds {
             sine,
-            turn: turn(near).max(turn(far)),
+            turn: turn(least, root).max(turn(most, (gap + most.squared()).sqrt())),
             turn_1: scale * sine,
-            turn_2: scale * (S::ONE + S::from_f64(3.0) * sine.squared() / p),
+            turn_2: scale * (one + S::from_f64(3.0) * sine.squared() / p),
         }
     }
 
-    /// What [`for_each_root`] must know of G.
+    /// G''' at most, for a receiver point at the distance `reach` from the centre.
     #[inline(always)]
-    fn local(&self, rho: S, interactions: u32, i: S, half: S) -> Local<S> {
+    pub(in crate::kinds) fn third(&self, b: &Bounds<S>, reach: S) -> S {
+        let three = S::from_f64(3.0);
+        self.radius + reach * (b.turn * (b.turn.squared() + three * b.turn_1) + b.turn_2)
+    }
+
+    /// dδ'/di.
+    #[inline(always)]
+    pub(in crate::kinds) fn turn_1(&self, ray: &Ray<S>, interactions: u32) -> S {
+        let chords = S::TWO * S::from_f64(f64::from(interactions) - 1.0);
+        chords * self.gap() * ray.sin_i / (ray.q.squared() * ray.q)
+    }
+
+    /// G at a ray, for [`for_each_root_of`].
+    #[inline(always)]
+    fn at(&self, rho: S, reach: S, interactions: u32, i: S) -> (Ray<S>, Sample<S>) {
         let ray = self.ray(i, interactions);
         let (value, slope) = self.impact(&ray, rho);
-        let (a, reach) = (self.radius, rho.hypot(self.receiver_z));
-        let b = self.bounds(i, half, interactions);
         let rays = S::from_f64(f64::from(interactions) + 1.0);
-        Local {
+        // Rounding of i counts with 1, that of δ with m; both shrink with i.
+        let size = i.abs() * (self.radius + reach * rays) + rho.abs();
+        let noise = S::from_f64(4.0) * S::EPSILON * size;
+        let sample = Sample {
             value,
             slope,
-            curvature: a * b.sine + reach * (b.turn.squared() + b.turn_1),
-            // Rounding of i counts with 1, that of δ with m; both shrink with i.
-            noise: S::from_f64(4.0) * S::EPSILON * (i.abs() * (a + reach * rays) + rho.abs()),
+            noise,
+        };
+        (ray, sample)
+    }
+
+    /// What [`for_each_root_of`] must know of G.
+    #[inline(always)]
+    fn local(&self, rho: S, reach: S, interactions: u32, i: S, half: S) -> Local<S> {
+        let (ray, at) = self.at(rho, reach, interactions, i);
+        let (a, c) = (self.radius, self.receiver_z);
+        let b = self.bounds(&ray, half, interactions);
+        let whole = a * b.sine + reach * (b.turn.squared() + b.turn_1);
+        let bend = ray.turn.squared() * (c * ray.sin_d + rho * ray.cos_d)
+            - self.turn_1(&ray, interactions) * (c * ray.cos_d - rho * ray.sin_d)
+            - a * ray.sin_i;
+        Local {
+            value: at.value,
+            slope: at.slope,
+            curvature: whole.min(bend.abs() + half * self.third(&b, reach)),
+            noise: at.noise,
         }
     }
 
@@ -195,10 +238,12 @@ impl<S: Scalar> GlassSphere<S> {
         // What rounding could put on the wrong side of the limit is looked at as well.
         let wider = self.max_incidence * (S::ONE + S::EPSILON.sqrt());
         let limit = wider.min(S::HALF * S::PI);
-        for_each_root(
+        let reach = rho.hypot(self.receiver_z);
+        for_each_root_of(
             -limit,
             limit,
-            |i, half| self.local(rho, interactions, i, half),
+            |i| self.at(rho, reach, interactions, i).1,
+            |i, half| self.local(rho, reach, interactions, i, half),
             |root| {
                 let (i, touching) = match root {
                     Isolated::Simple(i) => (i, false),
@@ -209,34 +254,32 @@ impl<S: Scalar> GlassSphere<S> {
                 let i = if central { S::ZERO } else { i };
                 let ray = self.ray(i, interactions);
                 if ray.cos_d * self.receiver_z > S::ZERO {
-                    visit(self.root(rho, interactions, i, touching));
+                    visit(self.root(&ray, rho, interactions, i, touching));
                 }
             },
         );
     }
 
-    /// Irradiance by the ray at the root `i`.
+    /// Irradiance by a ray; `central` says that it is the one on the axis, at ρ = 0.
     #[inline(always)]
-    fn root_irradiance(&self, rho: S, interactions: u32, i: S) -> S {
-        let ray = self.ray(i, interactions);
-        let (_, slope) = self.impact(&ray, rho);
-        let flux = self.irradiance * self.weight(&ray, interactions) * self.radius.squared();
-        if rho == S::ZERO && i == S::ZERO {
+    fn irradiance_of(&self, ray: &Ray<S>, rho: S, interactions: u32, central: bool) -> S {
+        let (_, slope) = self.impact(ray, rho);
+        let flux = self.irradiance * self.weight(ray, interactions) * self.radius.squared();
+        if central {
             return flux / slope.squared();
         }
         flux * ray.sin_i.abs() * ray.cos_i * ray.cos_d.abs() / (rho * slope.abs())
     }
 
-    fn root(&self, rho: S, interactions: u32, i: S, touching: bool) -> Root<S> {
-        let ray = self.ray(i, interactions);
-        let (_, slope) = self.impact(&ray, rho);
-        let weight = self.weight(&ray, interactions);
+    fn root(&self, ray: &Ray<S>, rho: S, interactions: u32, i: S, touching: bool) -> Root<S> {
+        let (_, slope) = self.impact(ray, rho);
+        let weight = self.weight(ray, interactions);
         // A ring that meets the axis: infinitely many rays at one point.
         let on_line = rho == S::ZERO && i != S::ZERO;
         let conditioning = if on_line || touching {
             S::ONE / S::ZERO
         } else {
-            self.conditioning(rho, interactions, i, slope)
+            self.conditioning(ray, rho, interactions, slope)
         };
         let size = self.radius + rho.hypot(self.receiver_z);
         Root {
@@ -245,7 +288,7 @@ impl<S: Scalar> GlassSphere<S> {
             irradiance: if on_line && weight > S::ZERO {
                 S::ONE / S::ZERO
             } else {
-                self.root_irradiance(rho, interactions, i)
+                self.irradiance_of(ray, rho, interactions, rho == S::ZERO)
             },
             conditioning,
             inside: self.max_incidence - i.abs(),
@@ -255,7 +298,7 @@ impl<S: Scalar> GlassSphere<S> {
     }
 
     /// Differentiates the irradiance along the root, di = -(∂G/∂p dp)/G'.
-    fn conditioning(&self, rho: S, interactions: u32, i: S, slope: S) -> S {
+    fn conditioning(&self, ray: &Ray<S>, rho: S, interactions: u32, slope: S) -> S {
         type G<S> = Gradient<S, 4>;
         let input = |value: S, index: usize| G::input(value, index, value.abs());
         let sphere = GlassSphere {
@@ -265,15 +308,20 @@ impl<S: Scalar> GlassSphere<S> {
             irradiance: Scalar::ONE,
             max_incidence: Scalar::ONE,
         };
-        let rho = input(rho, 3);
-        let fixed = G::constant(i);
-        let (value, _) = sphere.impact(&sphere.ray(fixed, interactions), rho);
-        let mut moving = G::constant(i);
-        for (m, v) in moving.slopes.iter_mut().zip(value.slopes) {
-            *m = -v / slope;
+        let (sin_i, cos_i) = (ray.sin_i, ray.cos_i);
+        let fixed = (G::constant(sin_i), G::constant(cos_i));
+        let distance = input(rho, 3);
+        let (value, _) = sphere.impact(&sphere.ray_of(fixed, interactions), distance);
+        let (mut sine, mut cosine) = fixed;
+        for (k, v) in value.slopes.into_iter().enumerate() {
+            let moved = -v / slope;
+            sine.slopes[k] = cos_i * moved;
+            cosine.slopes[k] = -(sin_i * moved);
         }
+        let moving = sphere.ray_of((sine, cosine), interactions);
+        let central = rho == S::ZERO;
         sphere
-            .root_irradiance(rho, interactions, moving)
+            .irradiance_of(&moving, distance, interactions, central)
             .relative_change()
     }
 

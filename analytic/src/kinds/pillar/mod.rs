@@ -255,8 +255,33 @@ impl<S: Scalar> Pillar<S> {
                 sum.error += root.irradiance;
             }
         }
+        self.add_shadow_error(x, y, &mut sum);
         self.add_foot_error(x, y, &mut sum);
         sum
+    }
+
+    /// At the edge of the plan shadow rounding decides whether there is a root. A ray that passes the side at a distance δ
+    /// comes from a reflection with cos i = δ s/(2 s1 s2) to first order (the height of the triangle A Q P), so the light
+    /// that may be missing is that of δ within rounding: I R h a s² δ/(4 s1² s2² d³), s1 and s2 to the tangent points.
+    fn add_shadow_error(&self, x: S, y: S, sum: &mut Estimate<S>) {
+        let (clearance, leave) = self.passage(x, y);
+        let margin = rounding_error(self.extent(x, y), S::ZERO);
+        let is_near = clearance.abs() <= margin && leave < S::ONE / S::ZERO;
+        if !is_near {
+            return;
+        }
+        let Plan { light, point, .. } = self.plan(x, y);
+        let tangent = |(x, y): (S, S)| {
+            let r = x.hypot(y);
+            ((r - self.radius) * (r + self.radius)).max(S::ZERO).sqrt()
+        };
+        let (first, second) = (tangent(light), tangent(point));
+        let s = first + second;
+        let distance = s.hypot(self.light.z);
+        let product = S::TWO * first * second / s;
+        let transfer = self.light.z * self.radius / (distance.squared() * distance);
+        sum.error +=
+            self.intensity * self.reflectance * transfer * (margin + margin) / product.squared();
     }
 
     /// At the foot of the side rounding decides whether the point is in front of it.

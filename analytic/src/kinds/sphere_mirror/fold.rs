@@ -10,7 +10,6 @@
 
 use super::{Setting, Side, SphereMirror};
 use crate::kinds::singularity::{Singularity, SingularityKind};
-use crate::roots::bracketed;
 use crate::vector::{Vec3, vec3};
 
 /// Half planes through the axis with which the folds are searched.
@@ -21,7 +20,9 @@ const RAYS: u32 = 192;
 const RING: u32 = 64;
 
 /// The planes through the axis of centre and light.
+#[derive(Clone, Copy, Debug)]
 struct Meridians {
+    /// The light; the receiver point is of no account.
     setting: Setting<f64>,
     axis: Vec3<f64>,
     across: Vec3<f64>,
@@ -35,48 +36,105 @@ impl Meridians {
     }
 }
 
-/// A point of a fold, in units of the radius: the ray and how far the point is.
-#[derive(Clone, Copy)]
+/// A point of a fold in a half plane, in units of the radius: its ray, where it is, and whether the mirror lights it.
+#[derive(Clone, Copy, Debug)]
 struct Fold {
     psi: f64,
-    distance: f64,
+    at: Vec3<f64>,
+    lit: bool,
+}
+
+/// The caustic of a mirror on its receiver, made ready for many points.
+///
+/// The folds belong to the scene: their points in all half planes are found once. What a receiver point adds is which of them
+/// is nearest, and the refinement from there.
+#[derive(Clone, Debug)]
+pub struct SphereCaustic {
+    mirror: SphereMirror<f64>,
+    shape: Shape,
+}
+
+#[derive(Clone, Debug)]
+enum Shape {
+    /// A convex mirror has no caustic.
+    Nothing,
+    /// The light is at the centre: all rays return there, if that is on the receiver.
+    PointFocus,
+    Sheets {
+        meridians: Meridians,
+        /// The folds in each half plane.
+        folds: Vec<Vec<Fold>>,
+    },
+}
+
+impl SphereCaustic {
+    /// Samples the folds.
+    pub fn new(mirror: &SphereMirror<f64>) -> Self {
+        let setting = mirror.setting(mirror.centre);
+        let shape = if mirror.side == Side::Convex {
+            Shape::Nothing
+        } else if setting.source.length() < 1e-12 {
+            if f64::abs(mirror.plane()) < 1e-12 {
+                Shape::PointFocus
+            } else {
+                Shape::Nothing
+            }
+        } else {
+            let axis = setting.source.normalized();
+            let across = mirror.any_plane(axis);
+            let meridians = Meridians {
+                setting,
+                axis,
+                across,
+                other: axis.cross(across),
+            };
+            let step = 2.0 * core::f64::consts::PI / f64::from(HALF_PLANES);
+            let folds = (0..HALF_PLANES).map(|k| {
+                let omega = step * f64::from(k);
+                let mut found = vec![];
+                mirror.for_each_fold(&meridians, omega, (0.0, core::f64::consts::PI), RAYS, |f| {
+                    found.push(f)
+                });
+                found
+            });
+            Shape::Sheets {
+                meridians,
+                folds: folds.collect(),
+            }
+        };
+        SphereCaustic {
+            mirror: *mirror,
+            shape,
+        }
+    }
+
+    /// The nearest singularity of the irradiance to the receiver point `x`, of those that the mirror lights; `None` if
+    /// there is none. The distance is accurate to about 1e-9 of the radius.
+    pub fn nearest(&self, x: Vec3<f64>) -> Option<Singularity<f64>> {
+        let receiver = self.mirror.scaled(x);
+        match &self.shape {
+            Shape::Nothing => None,
+            Shape::PointFocus => Some(Singularity {
+                kind: SingularityKind::PointFocus,
+                distance: receiver.length() * self.mirror.radius,
+            }),
+            Shape::Sheets { meridians, folds } => Singularity::nearer(
+                self.mirror.nearest_fold(meridians, folds, receiver),
+                self.mirror.line_focus(meridians, receiver),
+            ),
+        }
+    }
 }
 
 impl SphereMirror<f64> {
-    /// The nearest singularity of the irradiance to the receiver point `x`, of those that the mirror lights; `None` if
-    /// there is none. The distance is accurate to about 1e-9 of the radius.
+    /// As [`SphereCaustic::nearest`], for one point.
     pub fn singularity(&self, x: Vec3<f64>) -> Option<Singularity<f64>> {
-        if self.side == Side::Convex {
-            return None;
-        }
-        let setting = self.setting(x);
-        let from_centre = setting.source.length();
-        if from_centre < 1e-12 {
-            return self.point_focus(&setting);
-        }
-        let axis = setting.source.normalized();
-        let across = self.any_plane(axis);
-        let meridians = Meridians {
-            setting,
-            axis,
-            across,
-            other: axis.cross(across),
-        };
-        Singularity::nearer(self.nearest_fold(&meridians), self.line_focus(&meridians))
+        SphereCaustic::new(self).nearest(x)
     }
 
     /// Height of the receiver in units of the radius, from the centre.
     fn plane(&self) -> f64 {
         (self.receiver_z - self.centre.z) / self.radius
-    }
-
-    /// A light at the centre: all rays return there.
-    fn point_focus(&self, setting: &Setting<f64>) -> Option<Singularity<f64>> {
-        let distance = setting.receiver.length() * self.radius;
-        (f64::abs(self.plane()) < 1e-12).then_some(Singularity {
-            kind: SingularityKind::PointFocus,
-            distance,
-        })
     }
 
     /// Whether the mirror lights the point `target`, in units of the radius, by way of the mirror point with this normal.
@@ -98,8 +156,8 @@ impl SphereMirror<f64> {
     }
 
     /// Where the axis of centre and light crosses the receiver, if the ring that reflects there is lit.
-    fn line_focus(&self, m: &Meridians) -> Option<Singularity<f64>> {
-        let (axis, receiver) = (m.axis, m.setting.receiver);
+    fn line_focus(&self, m: &Meridians, receiver: Vec3<f64>) -> Option<Singularity<f64>> {
+        let axis = m.axis;
         let b = if f64::abs(axis.z) > 1e-12 {
             self.plane() / axis.z
         } else if f64::abs(self.plane()) < 1e-12 {
@@ -157,33 +215,33 @@ impl SphereMirror<f64> {
             .map(|focus| focus.z - self.plane())
     }
 
-    /// The nearest lit fold in the half plane ω, of those between `low` and `high` in ψ.
-    fn fold_in(&self, m: &Meridians, omega: f64, low: f64, high: f64, rays: u32) -> Option<Fold> {
+    /// Visits the folds in the half plane ω, of those between two angles ψ.
+    fn for_each_fold(
+        &self,
+        m: &Meridians,
+        omega: f64,
+        (low, high): (f64, f64),
+        rays: u32,
+        mut visit: impl FnMut(Fold),
+    ) {
         let at = |k: u32| low + (high - low) * f64::from(k) / f64::from(rays);
         let sample = |psi: f64| self.above(m, psi, omega).map(|h| (psi, h));
-        let mut nearest: Option<Fold> = None;
-        let mut crossing = |before: f64, after: f64| {
-            // No derivative: the bracket is halved.
-            let f = |psi: f64| (self.above(m, psi, omega).unwrap_or(0.0), 0.0);
-            let psi = bracketed(f, before, after);
+        let mut crossing = |before: (f64, f64), after: (f64, f64)| {
+            let psi = false_position(|psi| self.above(m, psi, omega), before, after);
             let normal = m.normal(psi, omega);
             if let Some(focus) = self.tangential_focus(&m.setting, normal) {
-                let target = vec3(focus.x, focus.y, self.plane());
-                let distance = (m.setting.receiver - target).length();
-                if self.lights(&m.setting, normal, target)
-                    && nearest.is_none_or(|n| distance < n.distance)
-                {
-                    nearest = Some(Fold { psi, distance });
-                }
+                let at = vec3(focus.x, focus.y, self.plane());
+                let lit = self.lights(&m.setting, normal, at);
+                visit(Fold { psi, at, lit });
             }
         };
-        let (mut first, mut second) = (None, None);
+        let (mut first, mut second) = (None::<(f64, f64)>, None::<(f64, f64)>);
         for k in 0..=rays {
             let third = sample(at(k));
-            if let (Some((p1, h1)), Some((p2, h2))) = (second, third)
-                && (h1 < 0.0) != (h2 < 0.0)
+            if let (Some(before), Some(after)) = (second, third)
+                && (before.1 < 0.0) != (after.1 < 0.0)
             {
-                crossing(p1, p2);
+                crossing(before, after);
             }
             if let (Some((p0, h0)), Some((_, h1)), Some((p2, h2))) = (first, second, third)
                 && (h0 < 0.0) == (h1 < 0.0)
@@ -192,12 +250,11 @@ impl SphereMirror<f64> {
                 && let Some(across) = self.other_side(m, omega, (p0, p2), h1 < 0.0)
             {
                 // Two crossings between samples: the receiver nearly touches the sheet.
-                crossing(p0, across);
-                crossing(across, p2);
+                crossing((p0, h0), across);
+                crossing(across, (p2, h2));
             }
             (first, second) = (second, third);
         }
-        nearest
     }
 
     /// A ray between two whose tangential focus is on the other side of the receiver, if a search for the extremum finds one.
@@ -207,7 +264,7 @@ impl SphereMirror<f64> {
         omega: f64,
         (mut low, mut high): (f64, f64),
         below: bool,
-    ) -> Option<f64> {
+    ) -> Option<(f64, f64)> {
         let toward = |psi: f64| {
             let h = self.above(m, psi, omega).unwrap_or(f64::INFINITY);
             if below { -h } else { h }
@@ -217,7 +274,8 @@ impl SphereMirror<f64> {
             let (c, d) = (low + third, high - third);
             let (at_c, at_d) = (toward(c), toward(d));
             if f64::min(at_c, at_d) < 0.0 {
-                return Some(if at_c < at_d { c } else { d });
+                let (psi, h) = if at_c < at_d { (c, at_c) } else { (d, at_d) };
+                return Some((psi, if below { -h } else { h }));
             }
             if at_c < at_d {
                 high = d;
@@ -228,24 +286,50 @@ impl SphereMirror<f64> {
         None
     }
 
-    fn nearest_fold(&self, m: &Meridians) -> Option<Singularity<f64>> {
-        use core::f64::consts::PI;
-        let step = 2.0 * PI / f64::from(HALF_PLANES);
-        let at = |k: u32| self.fold_in(m, step * f64::from(k), 0.0, PI, RAYS);
+    /// The nearest lit one of the folds whose samples are given.
+    ///
+    /// Every local minimum of the distance among the samples, and with it every end of a lit part, is refined, but for
+    /// those that cannot win: up to the next half plane a fold does not go twice as far as to the farthest fold there.
+    fn nearest_fold(
+        &self,
+        m: &Meridians,
+        folds: &[Vec<Fold>],
+        receiver: Vec3<f64>,
+    ) -> Option<Singularity<f64>> {
+        let near = |fold: &Fold| (*fold, (receiver - fold.at).length());
+        let samples: Vec<_> = folds
+            .iter()
+            .map(|plane| {
+                let lit = plane.iter().filter(|fold| fold.lit).map(near);
+                lit.min_by(|a, b| a.1.total_cmp(&b.1))
+            })
+            .collect();
+        let count = samples.len();
+        let mut minima: Vec<_> = (0..count)
+            .filter_map(|k| {
+                let (here, distance) = samples[k]?;
+                let sides = [(k + count - 1) % count, (k + 1) % count];
+                let far = |side: usize| samples[side].map_or(f64::INFINITY, |s| s.1);
+                if sides.iter().any(|&side| far(side) < distance) {
+                    return None;
+                }
+                // Lit or dark, whichever of them continues this one.
+                let way = |side: usize| {
+                    let lengths = folds[side].iter().map(|f| (f.at - here.at).length());
+                    lengths.max_by(f64::total_cmp).unwrap_or(f64::INFINITY)
+                };
+                let way = sides.into_iter().map(way).fold(0.0, f64::max);
+                Some((k, here, distance, distance - 2.0 * way))
+            })
+            .collect();
+        minima.sort_by(|a, b| a.2.total_cmp(&b.2));
+        let step = 2.0 * core::f64::consts::PI / count as f64;
         let mut nearest = f64::INFINITY;
-        let far = |fold: Option<Fold>| fold.map_or(f64::INFINITY, |f| f.distance);
-        let (mut before, mut here) = (at(HALF_PLANES - 1), at(0));
-        for k in 0..HALF_PLANES {
-            let after = at(k + 1);
-            // Every local minimum, and with it every end of a lit part, is refined.
-            if let Some(fold) = here
-                && fold.distance <= far(before)
-                && fold.distance <= far(after)
-            {
-                let omega = step * f64::from(k);
-                nearest = nearest.min(self.refined(m, (omega, fold), step));
+        for (k, here, distance, least) in minima {
+            if least < nearest {
+                let start = (step * k as f64, here.psi, distance);
+                nearest = nearest.min(self.refined(m, receiver, start, step));
             }
-            (before, here) = (here, after);
         }
         nearest.is_finite().then_some(Singularity {
             kind: SingularityKind::Fold,
@@ -255,28 +339,63 @@ impl SphereMirror<f64> {
 
     /// The smallest distance along a fold within `step` in ω of a point of it: golden section, where a dark part counts as
     /// infinitely far.
-    fn refined(&self, m: &Meridians, (mut omega, mut fold): (f64, Fold), step: f64) -> f64 {
+    fn refined(
+        &self,
+        m: &Meridians,
+        receiver: Vec3<f64>,
+        (mut omega, mut psi, mut best): (f64, f64, f64),
+        step: f64,
+    ) -> f64 {
         let width = 2.0 * core::f64::consts::PI / f64::from(RAYS);
         let ratio = 0.5 * (libm::sqrt(5.0) - 1.0);
         let (mut a, mut b) = (omega - step, omega + step);
-        for _ in 0..48 {
-            let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
-            let [at_c, at_d] = [c, d].map(|w| {
-                let there = self.fold_in(m, w, fold.psi - width, fold.psi + width, 4);
-                there.map_or(f64::INFINITY, |there| {
-                    if there.distance < fold.distance {
-                        (omega, fold) = (w, there);
+        let mut at = |w: f64, omega: &mut f64| {
+            let mut distance = f64::INFINITY;
+            self.for_each_fold(m, w, (psi - width, psi + width), 4, |fold| {
+                let there = (receiver - fold.at).length();
+                if fold.lit && there < distance {
+                    distance = there;
+                    if there < best {
+                        (best, psi, *omega) = (there, fold.psi, w);
                     }
-                    there.distance
-                })
+                }
             });
+            distance
+        };
+        let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
+        let (mut at_c, mut at_d) = (at(c, &mut omega), at(d, &mut omega));
+        for _ in 0..48 {
             // Both in the dark: towards what is known to be lit.
             if at_c < at_d || (at_c == at_d && omega < d) {
-                b = d;
+                (b, d, at_d) = (d, c, at_c);
+                c = b - ratio * (b - a);
+                at_c = at(c, &mut omega);
             } else {
-                a = c;
+                (a, c, at_c) = (c, d, at_d);
+                d = a + ratio * (b - a);
+                at_d = at(d, &mut omega);
             }
         }
-        fold.distance
+        best
     }
+}
+
+/// The zero of a function between two points at which it has different signs: false position, where the value at an end that
+/// stays is halved (M. Dowell & P. Jarratt, BIT 11, 168-174, 1971, "Illinois"). A value that is missing counts as zero.
+fn false_position(f: impl Fn(f64) -> Option<f64>, low: (f64, f64), high: (f64, f64)) -> f64 {
+    let ((mut a, mut at_a), (mut b, mut at_b)) = (low, high);
+    for _ in 0..64 {
+        let x = b - at_b * (b - a) / (at_b - at_a);
+        let value = f(x).unwrap_or(0.0);
+        if (value < 0.0) != (at_b < 0.0) {
+            (a, at_a) = (b, at_b);
+        } else {
+            at_a *= 0.5;
+        }
+        (b, at_b) = (x, value);
+        if value == 0.0 || f64::abs(b - a) <= 4.0 * f64::EPSILON * f64::abs(b) {
+            break;
+        }
+    }
+    b
 }

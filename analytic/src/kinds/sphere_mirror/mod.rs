@@ -26,6 +26,7 @@ mod fold;
 mod visibility;
 
 pub use eye::Seen;
+pub use fold::SphereCaustic;
 
 use crate::kinds::Estimate;
 use crate::scalar::Scalar;
@@ -104,7 +105,7 @@ pub struct Root<S> {
 }
 
 /// Lengths in units of the radius, relative to the centre.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Setting<S> {
     /// The light, or the unit vector towards a light at infinity.
     source: Vec3<S>,

@@ -191,7 +191,8 @@ impl<S: Scalar> Ripples<S> {
             let [kx, ky] = wave.wave_vector.map(&lift);
             let angle = kx * u[0] + ky * u[1] + lift(wave.phase);
             let a = lift(wave.amplitude);
-            let (cosine, sine) = (a * angle.cos(), a * angle.sin());
+            let (sine, cosine) = angle.sin_cos();
+            let (cosine, sine) = (a * cosine, a * sine);
             let (xx, xy, yy) = (kx.squared(), kx * ky, ky.squared());
             at.zeta += cosine;
             at.gradient[0] -= kx * sine;

@@ -1,0 +1,325 @@
+//! The final test of one integrator on one scene: replicates in growing numbers, judged at each look until all is decided.
+
+use nephroid_analytic::camera::Bounded;
+
+use super::expected::Expected;
+use super::replicates::{Canvas, FINAL, Seeds, run as run_replicates};
+use super::sizing::{self, Check, Demand, PATHS_BEFORE_MISSING, Size};
+use crate::integrators::Prepared;
+use crate::judge::betting::Bet;
+use crate::judge::evidence::{Invalid, Replicate, Sample, Tally};
+use crate::judge::heavy::{self, TailIndex};
+use crate::judge::hypotheses::dependence_p;
+use crate::judge::spending::{Look, looks};
+use crate::judge::verdict::{Case, Finding, Part, Spent, State, decide_at};
+use crate::regions::Regions;
+
+use super::replicates::Shape;
+
+/// Replicates that are held in memory at a time.
+const AT_A_TIME: u32 = 256;
+/// Weights of the betting test and of the test of independence in the image's share of a check's error probability.
+const BETTING: f64 = 0.1;
+const INDEPENDENCE: f64 = 0.1;
+
+/// What is checked: a class, or the sum of those claimed.
+struct Subject {
+    /// Position of the class, `None` for the sum.
+    class: Option<usize>,
+    layers: Vec<usize>,
+    expected: Expected,
+    /// One for each area of which the truth is known, the image first.
+    tallies: Vec<Tally>,
+    bet: Bet,
+    spent: Spent,
+    finding: Option<Finding>,
+}
+
+/// A finding about one check.
+pub struct Judged {
+    /// Position of the class, `None` for the sum of those claimed.
+    pub class: Option<usize>,
+    /// What the mean over the image should be.
+    pub truth: Option<Bounded>,
+    /// What it is.
+    pub mean: Option<f64>,
+    /// What follows.
+    pub finding: Finding,
+    /// Tail index of the largest pixels of the replicates, where there are enough.
+    pub tail: Option<TailIndex>,
+}
+
+/// What a test came to.
+pub struct Evidence {
+    /// A finding for every class in order, and then for their sum.
+    pub judged: Vec<Judged>,
+    /// What was planned.
+    pub size: Size,
+    /// Replicates that were drawn.
+    pub replicates: u32,
+    /// The fewest contributions of a claimed class in any replicate.
+    pub fewest_contributions: u64,
+    /// Looks that were taken.
+    pub looks: u32,
+}
+
+/// Plans and runs the test of one integrator on one scene. `expected` has the means of each class, `None` for what is not
+/// sampled.
+pub fn gather(
+    prepare: impl FnOnce() -> Box<dyn Prepared>,
+    canvas: Canvas,
+    regions: &Regions,
+    shape: Shape,
+    seeds: Seeds,
+    expected: &[Option<Expected>],
+    demand: Demand,
+) -> Evidence {
+    let mut subjects = subjects(expected);
+    let mut layers: Vec<Layer> = vec![Layer::default(); expected.len()];
+    if subjects.is_empty() {
+        let size = Size {
+            shape,
+            replicates: 0,
+            most: 0,
+        };
+        return Evidence {
+            judged: in_order(subjects, &layers),
+            size,
+            replicates: 0,
+            fewest_contributions: 0,
+            looks: 0,
+        };
+    }
+    let prepared = prepare();
+    let prepared = prepared.as_ref();
+    let checks: Vec<Check> = subjects.iter().map(Subject::check).collect();
+    let size = sizing::plan(prepared, canvas, shape, seeds, &checks, demand);
+    let (mut drawn, mut taken) = (0, 0);
+    for look in looks(u64::from(size.replicates), u64::from(size.most)) {
+        while u64::from(drawn) < look.replicates {
+            let end = (drawn + AT_A_TIME).min(look.replicates as u32);
+            let shape = &size.shape;
+            for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..end) {
+                subjects.iter_mut().for_each(|s| s.push(&r));
+                layers
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(l, layer)| layer.push(&r, l));
+            }
+            drawn = end;
+        }
+        taken += 1;
+        for subject in &mut subjects {
+            subject.decide(regions, demand, look, &size);
+        }
+        if subjects.iter().all(Subject::is_settled) {
+            break;
+        }
+    }
+    let fewest = subjects.iter().filter(|s| s.class.is_some());
+    Evidence {
+        fewest_contributions: fewest
+            .map(|s| s.tallies[0].sample().fewest_contributions)
+            .min()
+            .unwrap_or(0),
+        judged: in_order(subjects, &layers),
+        size,
+        replicates: drawn,
+        looks: taken,
+    }
+}
+
+/// What is kept of every layer, claimed or not.
+#[derive(Clone, Default)]
+struct Layer {
+    contributions: u64,
+    invalid: Invalid,
+    largest: Vec<f64>,
+}
+
+impl Layer {
+    fn push(&mut self, r: &Replicate, layer: usize) {
+        self.contributions += r.contributions(layer, 0);
+        if self.invalid.first.is_none() {
+            self.invalid = r.invalid[layer];
+        }
+        self.largest.push(r.largest[layer]);
+    }
+}
+
+/// Each claimed class, and their sum if there are several.
+fn subjects(expected: &[Option<Expected>]) -> Vec<Subject> {
+    let claimed = || {
+        let some = |(i, e): (usize, &Option<Expected>)| Some((i, e.clone()?));
+        expected.iter().enumerate().filter_map(some)
+    };
+    let mut subjects: Vec<_> = claimed()
+        .map(|(i, e)| Subject::new(Some(i), vec![i], e))
+        .collect();
+    if subjects.len() > 1 {
+        let all: Vec<Expected> = claimed().map(|(_, e)| e).collect();
+        let layers = claimed().map(|(i, _)| i).collect();
+        subjects.push(Subject::new(None, layers, sum(&all)));
+    }
+    subjects
+}
+
+fn sum(parts: &[Expected]) -> Expected {
+    let add = |a: Bounded, b: Bounded| Bounded {
+        value: a.value + b.value,
+        error: a.error + b.error,
+    };
+    let image = parts
+        .iter()
+        .fold(Bounded::default(), |s, e| add(s, e.image));
+    let areas = parts.iter().map(|e| e.areas.len()).min().unwrap_or(0);
+    let area = |k: usize| {
+        parts
+            .iter()
+            .fold(Bounded::default(), |s, e| add(s, e.areas[k]))
+    };
+    Expected {
+        image,
+        areas: (0..areas).map(area).collect(),
+    }
+}
+
+impl Subject {
+    fn new(class: Option<usize>, layers: Vec<usize>, expected: Expected) -> Self {
+        let tallies = vec![Tally::default(); expected.areas.len().max(1)];
+        Subject {
+            class,
+            layers,
+            expected,
+            tallies,
+            bet: Bet::default(),
+            spent: Spent::default(),
+            finding: None,
+        }
+    }
+
+    fn check(&self) -> Check {
+        Check {
+            layers: self.layers.clone(),
+            truth: self.expected.image,
+        }
+    }
+
+    fn push(&mut self, r: &Replicate) {
+        for (area, tally) in self.tallies.iter_mut().enumerate() {
+            tally.push(r, &self.layers, area);
+        }
+        let most = self.expected.image.value + self.expected.image.error;
+        if most > 0.0 {
+            let x: f64 = self.layers.iter().map(|&l| r.mean(l, 0)).sum();
+            self.bet.push(x / most);
+        }
+    }
+
+    fn is_decided(&self) -> bool {
+        self.finding
+            .as_ref()
+            .is_some_and(|f| f.state != State::Undecided)
+    }
+
+    /// Whether it is decided, or more replicates would not help.
+    fn is_settled(&self) -> bool {
+        let open = |f: &Finding| f.state == State::Undecided && f.replicates_needed.is_some();
+        self.finding.as_ref().is_some_and(|f| !open(f))
+    }
+
+    fn decide(&mut self, regions: &Regions, demand: Demand, look: Look, size: &Size) {
+        // A verdict stands; the sample goes on for the sake of others.
+        if self.is_decided() {
+            return;
+        }
+        let samples: Vec<Sample> = self.tallies.iter().map(Tally::sample).collect();
+        let weights = regions.weights();
+        let several = samples.len() > 1;
+        let weight = if several { weights[0] } else { 1.0 };
+        let parts = samples.iter().enumerate().skip(1).map(|(k, &sample)| Part {
+            place: regions.areas()[k].to_string(),
+            weight: weights[k],
+            sample,
+            truth: self.expected.areas[k],
+        });
+        let case = Case {
+            sample: samples[0],
+            truth: self.expected.image,
+            weight: weight * (1.0 - BETTING - INDEPENDENCE),
+            most: u64::from(size.most),
+            dependence: Some((
+                dependence_p(self.tallies[0].correlation(), samples[0].replicates),
+                weight * INDEPENDENCE,
+            )),
+            too_bright: Some((self.bet.p(), weight * BETTING)),
+            parts: parts.collect(),
+        };
+        let Demand { margin, levels, .. } = demand;
+        let mut finding = decide_at(&case, margin, levels, look.share, &mut self.spent);
+        let paths = look.replicates * size.shape.paths();
+        let is_missing = finding.state == State::Different && case.sample.contributions == 0;
+        if is_missing && paths < PATHS_BEFORE_MISSING {
+            finding = Finding::bare(
+                State::Undecided,
+                format!(
+                    "no contribution in {paths} paths; {PATHS_BEFORE_MISSING} are drawn before a class is called missing"
+                ),
+            );
+            finding.replicates_needed = Some(PATHS_BEFORE_MISSING.div_ceil(size.shape.paths()));
+        }
+        self.finding = Some(finding);
+    }
+}
+
+/// Findings for every class in order, and then for the sum.
+fn in_order(subjects: Vec<Subject>, layers: &[Layer]) -> Vec<Judged> {
+    let mut subjects = subjects.into_iter().peekable();
+    let decided = |s: Subject| {
+        let sample = s.tallies[0].sample();
+        let tail = s.class.and_then(|c| heavy::hill(&layers[c].largest));
+        Judged {
+            class: s.class,
+            truth: Some(s.expected.image),
+            mean: Some(sample.mean),
+            finding: s
+                .finding
+                .unwrap_or_else(|| Finding::bare(State::Undecided, "nothing was drawn")),
+            tail,
+        }
+    };
+    let mut judged = Vec::new();
+    for (position, layer) in layers.iter().enumerate() {
+        match subjects.next_if(|s| s.class == Some(position)) {
+            Some(subject) => judged.push(decided(subject)),
+            None => judged.push(not_sampled(layer, position)),
+        }
+    }
+    judged.extend(subjects.map(decided));
+    judged
+}
+
+/// A class that is declared impossible must indeed stay empty.
+fn not_sampled(layer: &Layer, position: usize) -> Judged {
+    let finding = if layer.contributions > 0 || layer.invalid.pixels() > 0 {
+        Finding::bare(
+            State::Different,
+            format!(
+                "declared impossible, yet it has {} contributions",
+                layer.contributions
+            ),
+        )
+    } else {
+        Finding::bare(
+            State::NotSampled,
+            "the method cannot build paths of this class",
+        )
+    };
+    Judged {
+        class: Some(position),
+        truth: None,
+        mean: None,
+        finding,
+        tail: None,
+    }
+}
