@@ -23,8 +23,9 @@ pub const LEVEL: f64 = 1e-6;
 pub const CONFIDENCE: f64 = 0.95;
 /// An exponent is decided if its interval is not wider than this on either side, on average.
 pub const HALF_WIDTH: f64 = 0.15;
-/// A replicate's mean is taken as normal from so many contributions on.
-pub const FEWEST_CONTRIBUTIONS: u64 = 200;
+/// The mean over all replicates is taken as normal from so many contributions on: its skewness is then below 0.023, and a tail of 1e-7
+/// wrong by less than a factor of two.
+pub const FEWEST_CONTRIBUTIONS: u64 = 2000;
 /// Replicates unless asked otherwise.
 pub const REPLICATES: u32 = 64;
 
@@ -77,7 +78,7 @@ pub struct Point {
     pub predicted_bias: f64,
     /// The squared bias without what noise adds to it: it may be negative.
     pub squared_bias: f64,
-    /// Whether a replicate has enough contributions for its mean to be normal: otherwise it is shown, and not used.
+    /// Whether there are enough contributions for the mean to be normal: otherwise it is shown, and not used.
     pub is_used: bool,
     /// The variance of a replicate against the exact one.
     pub variance: Option<VarianceTest>,
@@ -308,7 +309,7 @@ fn judge(
             let exact = &truth.expected[i];
             // Samples that are all alike have the kurtosis of their number; others more, which the sample shows.
             let kurtosis = 1.0 / (exact.effective_hit() * paths[i] as f64);
-            let is_used = kurtosis * FEWEST_CONTRIBUTIONS as f64 <= 1.0;
+            let is_used = kurtosis * FEWEST_CONTRIBUTIONS as f64 <= count;
             let is_known = is_used && (technique != Technique::Merge || view.is_close_up);
             let seconds: f64 = rows.iter().map(|r| r.seconds[i]).sum();
             Point {

@@ -111,7 +111,7 @@ pub fn bias_table(scene: &str, integrator: &str, studies: &[Study], skipped: &[S
         if left_out > 0 {
             let _ = writeln!(
                 out,
-                "  {left_out} of the bandwidths have fewer than {FEWEST_CONTRIBUTIONS} contributions in a replicate and are not used: more paths"
+                "  {left_out} of the bandwidths have fewer than {FEWEST_CONTRIBUTIONS} contributions and are not used: more paths"
             );
         }
         let failed = s.tests.iter().filter(|t| !(t.p > 1e-3));

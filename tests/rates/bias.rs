@@ -91,7 +91,7 @@ fn low_light() -> Entry {
 
 #[test]
 fn the_order_of_the_bias_of_progressive_photon_mapping() {
-    let paths = 8_000_000;
+    let paths = 4_000_000;
     let entry = low_light();
     let healthy = study_of(&entry, integrator("ppm").as_ref(), None, paths);
     println!(
