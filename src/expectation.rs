@@ -70,14 +70,15 @@ pub fn class_means(
 }
 
 /// Polynomial interpolation in b² at Chebyshev nodes.
-struct Interpolation {
-    bandwidths: Vec<f64>,
+pub(crate) struct Interpolation {
+    /// The nodes.
+    pub(crate) bandwidths: Vec<f64>,
     low: f64,
     high: f64,
 }
 
 impl Interpolation {
-    fn new(count: usize, low: f64, high: f64) -> Self {
+    pub(crate) fn new(count: usize, low: f64, high: f64) -> Self {
         let (low, high) = (low * low, high * high);
         let bandwidths = (0..count)
             .map(|k| {
@@ -93,7 +94,12 @@ impl Interpolation {
     }
 
     /// Average of `scale(b)` times the interpolant over a schedule.
-    fn average(&self, values: &[Bounded], scale: impl Fn(f64) -> f64, schedule: &[f64]) -> Bounded {
+    pub(crate) fn average(
+        &self,
+        values: &[Bounded],
+        scale: impl Fn(f64) -> f64,
+        schedule: &[f64],
+    ) -> Bounded {
         let m = values.len();
         let angle = |k: usize| core::f64::consts::PI * (k as f64 + 0.5) / m as f64;
         // Averages of scale(b) T_j over the schedule, and of scale(b).

@@ -14,6 +14,7 @@ pub mod integrators;
 pub mod judge;
 pub mod output;
 pub mod png_output;
+pub mod rates;
 pub mod regions;
 pub mod report;
 pub mod stability;

@@ -1,11 +1,14 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod bias;
+mod converge;
 mod evaluate;
 mod explain;
 mod golden;
 mod list;
 mod probe;
 mod probe_certify;
+mod rates;
 mod render;
 mod run;
 mod stability;
@@ -34,6 +37,8 @@ struct Cli {
 enum Command {
     Verify(verify::Args),
     List(list::Args),
+    Bias(bias::Args),
+    Converge(converge::Args),
     Evaluate(evaluate::Args),
     Probe(probe::Args),
     Explain(explain::Args),
@@ -50,6 +55,8 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         Command::Verify(args) => verify::run(&args),
         Command::List(args) => list::run(&args),
+        Command::Bias(args) => bias::run(&args),
+        Command::Converge(args) => converge::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Explain(args) => explain::run(&args),

@@ -54,6 +54,21 @@ pub struct FilmExpectation {
     height: u32,
 }
 
+/// What one point of the film sees of a regularized class.
+#[derive(Clone, Copy, Debug)]
+pub struct FilmPoint {
+    /// The floor point [m].
+    pub floor: [f64; 3],
+    /// Of the radiance [W m⁻² sr⁻¹].
+    pub moments: Moments,
+    /// The radiance at bandwidth zero.
+    pub sharp: f64,
+    /// Of a sample that is not zero, where [`Expectation::hit_probability`] knows it.
+    pub hit_probability: Option<Bounded>,
+    /// Whether the floor point is farther from every border of what the mirror lights than the kernel reaches.
+    pub is_interior: bool,
+}
+
 impl FilmExpectation {
     /// Prepares an entry of kind `diffuse` (which has no regularized class) or `planar-mirror`.
     ///
@@ -155,22 +170,59 @@ impl FilmExpectation {
         targets: &[[f64; 2]],
         tolerance: f64,
     ) -> Vec<Moments> {
+        self.region(0..self.width, rows, targets, tolerance)
+    }
+
+    /// The same for a rectangle of pixels.
+    pub fn region(
+        &self,
+        columns: core::ops::Range<u32>,
+        rows: core::ops::Range<u32>,
+        targets: &[[f64; 2]],
+        tolerance: f64,
+    ) -> Vec<Moments> {
         let v = [f64::from(rows.start), f64::from(rows.end)];
-        let columns = f64::from(self.width);
-        let tiles = libm::ceil(columns / (v[1] - v[0]).max(1.0)).max(1.0);
+        let u = [f64::from(columns.start), f64::from(columns.end)];
+        let tiles = libm::ceil((u[1] - u[0]) / (v[1] - v[0]).max(1.0)).max(1.0);
         self.layers
             .iter()
             .zip(targets)
             .map(|(layer, target)| {
                 let pieces: Vec<Polygon> = (0..tiles as u32)
                     .flat_map(|t| {
-                        let at = |t: u32| columns * f64::from(t) / tiles;
+                        let at = |t: u32| u[0] + (u[1] - u[0]) * f64::from(t) / tiles;
                         layer.pieces(&Polygon::rectangle([at(t), at(t + 1)], v))
                     })
                     .collect();
                 moments(&self.integrate(layer, &pieces, tolerance, |_| *target))
             })
             .collect()
+    }
+
+    /// What the film point (u, v) sees of a class, to a relative tolerance; `None` where it sees no floor of it.
+    pub fn at(&self, class: PathClass, u: f64, v: f64, tolerance: f64) -> Option<FilmPoint> {
+        let layer = self.layers.iter().find(|l| l.class == class)?;
+        let seen = layer.seen.iter().all(|s| s.contains(u, v));
+        if !seen || layer.hidden.iter().any(|h| h.contains(u, v)) {
+            return None;
+        }
+        let (expectation, rays) = (self.expectation.as_ref()?, self.view.rays(layer.eye)?);
+        let x = rays.floor_point(u, v).to_f64();
+        let (m, plain) = expectation.examine(x, tolerance);
+        let scaled = |b: Bounded, factor: f64| Bounded {
+            value: factor * b.value,
+            error: factor * b.error,
+        };
+        Some(FilmPoint {
+            floor: x,
+            moments: Moments {
+                mean: scaled(m.mean, layer.factor),
+                second_moment: scaled(m.second_moment, layer.factor * layer.factor),
+            },
+            sharp: layer.factor * expectation.sharp(x),
+            hit_probability: expectation.hit_probability(x, tolerance),
+            is_interior: plain && m.mean.value > 0.0,
+        })
     }
 
     fn integrate(

@@ -69,6 +69,16 @@ impl Landing {
         })
     }
 
+    /// The irradiance at x itself: that of an unbounded mirror if x is in front of it and inside the lit set, else 0.
+    pub fn sharp(&self) -> f64 {
+        if self.domain.room() > 0.0 {
+            let d2 = self.distance_squared;
+            self.strength * self.height / (d2 * libm::sqrt(d2))
+        } else {
+            0.0
+        }
+    }
+
     /// Whether x itself is on the border of the lit set, to a distance.
     pub fn is_on_border(&self, distance: f64) -> bool {
         let room = self.domain.room();

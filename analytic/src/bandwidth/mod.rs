@@ -17,6 +17,7 @@
 mod clip;
 mod cubature;
 pub mod film;
+mod hits;
 mod kernel;
 mod linked;
 mod merge;

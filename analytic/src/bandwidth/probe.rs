@@ -69,6 +69,27 @@ impl Expectation {
         self.technique
     }
 
+    /// The kernel.
+    pub fn kernel(&self) -> Kernel {
+        self.kernel
+    }
+
+    /// The bandwidths over which it is averaged.
+    pub fn bandwidths(&self) -> &[f64] {
+        &self.bandwidths
+    }
+
+    pub(super) fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// The irradiance at bandwidth zero [W/m²]: R I h/D³ where the mirror lights x, h the height and D the distance of the
+    /// light's image.
+    pub fn sharp(&self, x: [f64; 3]) -> f64 {
+        let x = Vec3::from_f64(x);
+        Landing::new(&self.setting, x, false).map_or(0.0, |l| l.sharp())
+    }
+
     /// Moments of the irradiance [W/m², (W/m²)²] at a point of the receiver.
     ///
     /// The tolerance is relative; values that are fainter than 1e-6 of the irradiance by an unbounded mirror are
