@@ -54,14 +54,14 @@ fn tie(old: &Value, parameters: &mut Value) {
     if p.contains_key("light_polar") {
         p.remove("light");
     }
-    if p.contains_key("half_arc") {
-        if let (Some(focus), Some(light)) = (old.get("focus"), old.get("light")) {
-            // A light at the focus stays there.
-            if focus[0] == light[0] && focus[1] == light[1] {
-                let z = p["light"][2].clone();
-                p.insert("light".into(), json!([p["focus"][0], p["focus"][1], z]));
-            }
-        }
+    if p.contains_key("half_arc")
+        && let (Some(focus), Some(light)) = (old.get("focus"), old.get("light"))
+        // A light at the focus stays there.
+        && focus[0] == light[0]
+        && focus[1] == light[1]
+    {
+        let z = p["light"][2].clone();
+        p.insert("light".into(), json!([p["focus"][0], p["focus"][1], z]));
     }
     let focus = if p.contains_key("f") && p.contains_key("light") {
         Some(decimal(&p["f"]))

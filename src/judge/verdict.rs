@@ -291,7 +291,7 @@ pub fn decide_at(
         }
         (Some(place), State::Different) => {
             let part = case.parts.iter().find(|p| p.place == *place);
-            part.map_or_else(String::new, |p| about_part(p))
+            part.map_or_else(String::new, about_part)
         }
         (None, State::Different) if unmet.is_some() => {
             "too bright, whatever the distribution of the replicates".to_owned()

@@ -308,9 +308,15 @@ fn judge(
             let bias = mean - truth.sharp.value;
             let exact = &truth.expected[i];
             // Samples that are all alike have the kurtosis of their number; others more, which the sample shows.
-            let kurtosis = 1.0 / (exact.effective_hit() * paths[i] as f64);
+            // A photon map serves all pixels of a region at once: its photons are counted by what they do to the spread.
+            let is_exact = technique != Technique::Merge || view.is_close_up;
+            let kurtosis = if is_exact {
+                1.0 / (exact.effective_hit() * paths[i] as f64)
+            } else {
+                variance / (mean * mean)
+            };
             let is_used = kurtosis * FEWEST_CONTRIBUTIONS as f64 <= count;
-            let is_known = is_used && (technique != Technique::Merge || view.is_close_up);
+            let is_known = is_used && is_exact;
             let seconds: f64 = rows.iter().map(|r| r.seconds[i]).sum();
             Point {
                 bandwidth: request.bandwidths[i],
