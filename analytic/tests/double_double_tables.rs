@@ -236,7 +236,7 @@ fn pillar(p: &Value) -> Form {
 }
 
 fn conic_wall(p: &Value) -> Form {
-    let axis = (number(&p["axis"][0]), number(&p["axis"][1]));
+    let axis: (D, D) = (number(&p["axis"][0]), number(&p["axis"][1]));
     let length = axis.0.hypot(axis.1);
     let wall = ConicWall {
         x: number(&p["focus"][0]),
