@@ -351,7 +351,7 @@ fn two_hemispheres_reflect_what_a_sphere_does() {
             };
             let class = nephroid_analytic::class::PathClass::LSDE;
             let [whole, a, b] = [(axis, -1.0), (axis, 0.0), (-axis, 0.0)]
-                .map(|(axis, cos)| PointTruth::regular(class, part(axis, cos)));
+                .map(|(axis, cos)| PointTruth::new(class, part(axis, cos)));
             let lit = assert_sum("hemispheres", whole, None, [a, b]);
             (0..2).for_each(|k| seen[k] += lit[k]);
         });
