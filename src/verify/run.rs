@@ -98,8 +98,9 @@ fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
     };
     let different = holm(&p(|v| v.finding.p_different), level, checks);
     let equivalent = holm(&p(|v| v.finding.p_equivalent), EQUIVALENCE_LEVEL, checks);
-    for (verdict, (different, equivalent)) in
-        verdicts.iter_mut().zip(different.into_iter().zip(equivalent))
+    for (verdict, (different, equivalent)) in verdicts
+        .iter_mut()
+        .zip(different.into_iter().zip(equivalent))
     {
         let levels = Levels {
             different: different.unwrap_or(verdict.levels.different),
@@ -152,38 +153,35 @@ fn run_pair(
     let command = command(request, &subject.argument, integrator.name(), checks);
     let per_replicate = evidence.size.shape.paths();
     let replicates = evidence.replicates;
-    let verdicts = evidence
-        .judged
-        .into_iter()
-        .map(|judged| {
-            let treatment = judged.class.map(|c| pair.plan[c].treatment);
-            let regularized = match treatment {
-                Some(t) => is_regularized(t),
-                None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
-            };
-            let class = judged.class.map(|c| pair.plan[c].class.to_string());
-            let place = judged.finding.place.clone();
-            Verdict {
-                scene: entry.name.clone(),
-                integrator: integrator.name().to_owned(),
-                class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
-                region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
-                paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
-                finding: judged.finding,
-                truth: judged.truth,
-                mean: judged.mean,
-                margin: request.margin,
-                levels,
-                bandwidth: regularized.then_some(request.bandwidth),
-                tail: judged.tail,
-                replicates,
-                looks: evidence.looks,
-                paths: u64::from(replicates) * per_replicate,
-                seed: request.seed,
-                seconds,
-                command: command.clone(),
-            }
-        });
+    let verdicts = evidence.judged.into_iter().map(|judged| {
+        let treatment = judged.class.map(|c| pair.plan[c].treatment);
+        let regularized = match treatment {
+            Some(t) => is_regularized(t),
+            None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
+        };
+        let class = judged.class.map(|c| pair.plan[c].class.to_string());
+        let place = judged.finding.place.clone();
+        Verdict {
+            scene: entry.name.clone(),
+            integrator: integrator.name().to_owned(),
+            class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
+            region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
+            paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
+            finding: judged.finding,
+            truth: judged.truth,
+            mean: judged.mean,
+            margin: request.margin,
+            levels,
+            bandwidth: regularized.then_some(request.bandwidth),
+            tail: judged.tail,
+            replicates,
+            looks: evidence.looks,
+            paths: u64::from(replicates) * per_replicate,
+            seed: request.seed,
+            seconds,
+            command: command.clone(),
+        }
+    });
     Ok(verdicts.collect())
 }
 
