@@ -2,6 +2,7 @@
 
 mod evaluate;
 mod explain;
+mod faults;
 mod golden;
 mod list;
 mod probe;
@@ -38,6 +39,7 @@ enum Command {
     Explain(explain::Args),
     Render(render::Args),
     Run(run::Args),
+    Faults(faults::Args),
     Golden(golden::Args),
     Stability(stability::Args),
 }
@@ -54,6 +56,7 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Faults(args) => faults::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Stability(args) => stability::run(&args),
     };

@@ -132,8 +132,7 @@ impl Finding {
             return;
         }
         self.replicates_needed = None;
-        self.reason =
-            "decided by what other checks left of the suite's error probability".to_owned();
+        self.reason = "decided by what other checks left of the suite's error probability".to_owned();
     }
 }
 
@@ -250,11 +249,7 @@ pub fn decide_at(
         spend(spent, p, None);
         spent.equivalent = spent.equivalent.min(equivalent(sample, truth));
     }
-    let tested = || {
-        case.parts
-            .iter()
-            .filter(|p| unmet_condition(&p.sample).is_none())
-    };
+    let tested = || case.parts.iter().filter(|p| unmet_condition(&p.sample).is_none());
     for part in tested() {
         let p = difference_p(&part.sample, part.truth) / (part.weight * share);
         // A bias that is shown to be inside the margin there is no difference.

@@ -89,6 +89,7 @@ fn details(v: &Verdict) -> Vec<String> {
             truth.value, v.levels.different
         ));
     }
+    lines.extend(v.looks_like.clone());
     if let Some(paths) = v.paths_needed {
         lines.push(format!("about {:.1e} paths would decide", paths as f64));
     }

@@ -72,6 +72,30 @@ pub fn gather(
     expected: &[Option<Expected>],
     demand: Demand,
 ) -> Evidence {
+    let end = End::AllDecided;
+    gather_until(end, prepare, canvas, regions, shape, seeds, expected, demand)
+}
+
+/// When a test ends, apart from its budget.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// All checks are decided.
+    AllDecided,
+    /// A check says different, or all are decided.
+    FirstDifference,
+}
+
+/// The same, up to an end of choice.
+pub fn gather_until(
+    end: End,
+    prepare: impl FnOnce() -> Box<dyn Prepared>,
+    canvas: Canvas,
+    regions: &Regions,
+    shape: Shape,
+    seeds: Seeds,
+    expected: &[Option<Expected>],
+    demand: Demand,
+) -> Evidence {
     let mut subjects = subjects(expected);
     let mut layers: Vec<Layer> = vec![Layer::default(); expected.len()];
     if subjects.is_empty() {
@@ -95,22 +119,20 @@ pub fn gather(
     let (mut drawn, mut taken) = (0, 0);
     for look in looks(u64::from(size.replicates), u64::from(size.most)) {
         while u64::from(drawn) < look.replicates {
-            let end = (drawn + AT_A_TIME).min(look.replicates as u32);
+            let stop = (drawn + AT_A_TIME).min(look.replicates as u32);
             let shape = &size.shape;
-            for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..end) {
+            for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..stop) {
                 subjects.iter_mut().for_each(|s| s.push(&r));
-                layers
-                    .iter_mut()
-                    .enumerate()
-                    .for_each(|(l, layer)| layer.push(&r, l));
+                layers.iter_mut().enumerate().for_each(|(l, layer)| layer.push(&r, l));
             }
-            drawn = end;
+            drawn = stop;
         }
         taken += 1;
         for subject in &mut subjects {
             subject.decide(regions, demand, look, &size);
         }
-        if subjects.iter().all(Subject::is_decided) {
+        let suffices = end == End::FirstDifference && subjects.iter().any(Subject::is_different);
+        if suffices || subjects.iter().all(Subject::is_decided) {
             break;
         }
     }
@@ -167,15 +189,9 @@ fn sum(parts: &[Expected]) -> Expected {
         value: a.value + b.value,
         error: a.error + b.error,
     };
-    let image = parts
-        .iter()
-        .fold(Bounded::default(), |s, e| add(s, e.image));
+    let image = parts.iter().fold(Bounded::default(), |s, e| add(s, e.image));
     let areas = parts.iter().map(|e| e.areas.len()).min().unwrap_or(0);
-    let area = |k: usize| {
-        parts
-            .iter()
-            .fold(Bounded::default(), |s, e| add(s, e.areas[k]))
-    };
+    let area = |k: usize| parts.iter().fold(Bounded::default(), |s, e| add(s, e.areas[k]));
     Expected {
         image,
         areas: (0..areas).map(area).collect(),
@@ -215,9 +231,11 @@ impl Subject {
     }
 
     fn is_decided(&self) -> bool {
-        self.finding
-            .as_ref()
-            .is_some_and(|f| f.state != State::Undecided)
+        self.finding.as_ref().is_some_and(|f| f.state != State::Undecided)
+    }
+
+    fn is_different(&self) -> bool {
+        self.finding.as_ref().is_some_and(|f| f.state == State::Different)
     }
 
     fn decide(&mut self, regions: &Regions, demand: Demand, look: Look, size: &Size) {
@@ -250,9 +268,7 @@ impl Subject {
         if is_missing && paths < PATHS_BEFORE_MISSING {
             finding = Finding::bare(
                 State::Undecided,
-                format!(
-                    "no contribution in {paths} paths; {PATHS_BEFORE_MISSING} are drawn before a class is called missing"
-                ),
+                format!("no contribution in {paths} paths; {PATHS_BEFORE_MISSING} are drawn before a class is called missing"),
             );
         }
         self.finding = Some(finding);

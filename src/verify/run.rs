@@ -77,6 +77,7 @@ pub fn run(
         verdicts.extend(run_pair(request, pair, levels, checks, truths)?);
     }
     settle(&mut verdicts, request.level, checks);
+    crate::diagnosis::annotate(request, &mut verdicts, truths)?;
     Ok(Outcome {
         verdicts,
         not_run,
@@ -98,9 +99,8 @@ fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
     };
     let different = holm(&p(|v| v.finding.p_different), level, checks);
     let equivalent = holm(&p(|v| v.finding.p_equivalent), EQUIVALENCE_LEVEL, checks);
-    for (verdict, (different, equivalent)) in verdicts
-        .iter_mut()
-        .zip(different.into_iter().zip(equivalent))
+    for (verdict, (different, equivalent)) in
+        verdicts.iter_mut().zip(different.into_iter().zip(equivalent))
     {
         let levels = Levels {
             different: different.unwrap_or(verdict.levels.different),
@@ -153,35 +153,39 @@ fn run_pair(
     let command = command(request, &subject.argument, integrator.name(), checks);
     let per_replicate = evidence.size.shape.paths();
     let replicates = evidence.replicates;
-    let verdicts = evidence.judged.into_iter().map(|judged| {
-        let treatment = judged.class.map(|c| pair.plan[c].treatment);
-        let regularized = match treatment {
-            Some(t) => is_regularized(t),
-            None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
-        };
-        let class = judged.class.map(|c| pair.plan[c].class.to_string());
-        let place = judged.finding.place.clone();
-        Verdict {
-            scene: entry.name.clone(),
-            integrator: integrator.name().to_owned(),
-            class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
-            region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
-            paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
-            finding: judged.finding,
-            truth: judged.truth,
-            mean: judged.mean,
-            margin: request.margin,
-            levels,
-            bandwidth: regularized.then_some(request.bandwidth),
-            tail: judged.tail,
-            replicates,
-            looks: evidence.looks,
-            paths: u64::from(replicates) * per_replicate,
-            seed: request.seed,
-            seconds,
-            command: command.clone(),
-        }
-    });
+    let verdicts = evidence
+        .judged
+        .into_iter()
+        .map(|judged| {
+            let treatment = judged.class.map(|c| pair.plan[c].treatment);
+            let regularized = match treatment {
+                Some(t) => is_regularized(t),
+                None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
+            };
+            let class = judged.class.map(|c| pair.plan[c].class.to_string());
+            let place = judged.finding.place.clone();
+            Verdict {
+                scene: entry.name.clone(),
+                integrator: integrator.name().to_owned(),
+                class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
+                region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
+                paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
+                finding: judged.finding,
+                truth: judged.truth,
+                mean: judged.mean,
+                margin: request.margin,
+                levels,
+                bandwidth: regularized.then_some(request.bandwidth),
+                tail: judged.tail,
+                looks_like: None,
+                replicates,
+                looks: evidence.looks,
+                paths: u64::from(replicates) * per_replicate,
+                seed: request.seed,
+                seconds,
+                command: command.clone(),
+            }
+        });
     Ok(verdicts.collect())
 }
 
@@ -190,7 +194,7 @@ fn is_regularized(treatment: Treatment) -> bool {
 }
 
 /// The replicates that pilots start with.
-fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels: u64) -> Shape {
+pub(crate) fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels: u64) -> Shape {
     let schedule = integrator.schedule(bandwidth);
     let merges = |t: Treatment| t == Treatment::Regularized(Technique::Merge);
     let iterations = if pair.plan.iter().any(|c| merges(c.treatment)) {

@@ -37,6 +37,8 @@ pub struct Verdict {
     pub bandwidth: Option<f64>,
     /// Tail index of the replicates' largest pixels, where there are enough.
     pub tail: Option<TailIndex>,
+    /// What a difference looks like, where it looks like something.
+    pub looks_like: Option<String>,
     /// Independent repetitions.
     pub replicates: u32,
     /// How often the growing sample was judged.

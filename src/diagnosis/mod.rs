@@ -1,0 +1,376 @@
+//! Diagnosis: what a residual that has been established looks like.
+//!
+//! Runs only after a "different", on replicates of its own, and decides nothing: a hint for the person who has to find the
+//! mistake, with the numbers it is taken from. Where the truth is known pixel by pixel the residual image is compared with
+//! [`patterns`]; where only the mean of a class is known, at finite bandwidth, its ratio to the truth is compared with that at half the bandwidth.
+
+pub mod constants;
+pub mod covariates;
+pub mod images;
+pub mod patterns;
+
+use nephroid_analytic::scene::Entry;
+
+use crate::error::Error;
+use crate::integrators::{Kernel, Plan, Prepared, Treatment};
+use crate::judge::verdict::State;
+use crate::regions::Regions;
+use crate::truth::TruthImage;
+use crate::verify::expected::Truths;
+use crate::verify::replicates::{Canvas, Seeds, Shape};
+use crate::verify::run::{Request, first_shape};
+use crate::verify::suite::Pair;
+use crate::verify::verdicts::Verdict;
+use constants::{candidates, names};
+use images::{Images, sample};
+use patterns::{Pattern, Residual};
+
+/// Phases of the streams, apart from those of pilots and of the test.
+const PHASE: u32 = 1001;
+const PHASE_MORE: u32 = 1002;
+const PHASE_HALF: u32 = 1003;
+/// Replicates of the image, and of each variation of it.
+const REPLICATES: u32 = 64;
+const VARIED: u32 = 24;
+/// By how much more paths a replicate has when it is asked whether their number matters.
+const MORE: u64 = 4;
+/// Standard errors beyond which two means are not the same.
+const SURE: f64 = 5.0;
+
+/// What is to be diagnosed: one class of one method on one scene.
+pub struct Subject<'a> {
+    /// The scene.
+    pub entry: &'a Entry,
+    /// The method on it.
+    pub prepared: &'a dyn Prepared,
+    /// The film's layer.
+    pub layer: usize,
+    /// What a replicate consists of.
+    pub shape: &'a Shape,
+    /// Where its seeds come from.
+    pub seeds: Seeds,
+    /// What is known of what should be.
+    pub truth: Known<'a>,
+}
+
+/// What is known of what a class should be.
+#[derive(Clone, Copy)]
+pub enum Known<'a> {
+    /// Every pixel.
+    Pixels(&'a [f64]),
+    /// The mean over the image [W m⁻² sr⁻¹], at the bandwidths and at half of each.
+    Means([f64; 2]),
+}
+
+impl<'a> Known<'a> {
+    /// What is known of a class: of an image if it is sampled exactly, of means if it is regularized.
+    pub fn of(
+        treatment: Treatment,
+        image: Option<&'a TruthImage>,
+        layer: usize,
+        means: Option<[f64; 2]>,
+    ) -> Option<Self> {
+        match treatment {
+            Treatment::Exact(_) => Some(Known::Pixels(image?.layers.get(layer)?)),
+            Treatment::Regularized(_) => means.map(Known::Means),
+            Treatment::NotSampled => None,
+        }
+    }
+}
+
+/// What it looks like, in one sentence.
+pub fn of(subject: &Subject) -> Option<String> {
+    let images = subject.drawn(subject.shape, PHASE, REPLICATES);
+    if let Some(p) = images.mean.iter().position(|v| !v.is_finite() || *v < 0.0) {
+        let (column, row) = (p % subject.width(), p / subject.width());
+        let v = images.mean[p];
+        let what = if v.is_nan() {
+            "an operation without a result (0/0, or a root of a negative number)"
+        } else if v < 0.0 {
+            "a negative contribution"
+        } else {
+            "a division by zero"
+        };
+        return Some(format!("looks like {what}, at column {column}, row {row}"));
+    }
+    let truth = match subject.truth {
+        Known::Pixels(pixels) => pixels.iter().sum::<f64>() / pixels.len() as f64,
+        Known::Means([mean, _]) => mean,
+    };
+    if images.contributions == 0 {
+        return (truth > 0.0).then(|| "looks like a class of paths that is missing".to_owned());
+    }
+    let [mean, error] = images.image_mean();
+    if !(truth > 0.0) {
+        return Some(format!(
+            "looks like light through, or from, a surface that should absorb it: the truth has none, the mean is {mean:.3e}"
+        ));
+    }
+    if let Some(text) = subject.depends_on_paths([mean, error]) {
+        return Some(text);
+    }
+    match subject.truth {
+        Known::Pixels(pixels) => subject.pattern(&images, pixels, [mean, error], truth),
+        Known::Means(means) => Some(subject.trend([mean, error], means)),
+    }
+}
+
+/// A factor with its standard error.
+fn shown([factor, error]: [f64; 2]) -> String {
+    // Two digits of the error.
+    let digits = if error > 0.0 { 1 - libm::floor(libm::log10(error)) as i32 } else { 4 };
+    let digits = digits.clamp(1, 6) as usize;
+    format!("{factor:.digits$} ± {error:.digits$}")
+}
+
+impl Subject<'_> {
+    fn width(&self) -> usize {
+        self.entry.camera.width as usize
+    }
+
+    fn drawn(&self, shape: &Shape, phase: u32, replicates: u32) -> Images {
+        let canvas = Canvas {
+            width: self.entry.camera.width,
+            height: self.entry.camera.height,
+            classes: self.entry.kind.classes(),
+        };
+        let layers = [self.layer];
+        sample(self.prepared, canvas, &layers, shape, self.seeds, phase, replicates)
+    }
+
+    fn depends_on_paths(&self, [mean, error]: [f64; 2]) -> Option<String> {
+        let shape = Shape {
+            paths_per_iteration: MORE * self.shape.paths_per_iteration,
+            ..self.shape.clone()
+        };
+        let [other, other_error] = self.drawn(&shape, PHASE_MORE, VARIED / 3).image_mean();
+        let ratio = other / mean;
+        let spread = libm::hypot(error, other_error) / mean;
+        let differs = (ratio - 1.0).abs() > f64::max(2.0 * SURE * spread, 0.02);
+        differs.then(|| {
+            format!(
+                "looks like a division by the wrong number of paths: {MORE} times the paths change the mean by a factor of {}",
+                shown([ratio, ratio * spread])
+            )
+        })
+    }
+
+    /// From a residual image.
+    fn pattern(
+        &self,
+        images: &Images,
+        truth: &[f64],
+        [mean, error]: [f64; 2],
+        should_be: f64,
+    ) -> Option<String> {
+        let factor = [mean / should_be, error / should_be];
+        let variance: Vec<f64> =
+            images.variance.iter().map(|v| v / images.replicates()).collect();
+        let residual = Residual::new(self.width(), &images.mean, truth, &variance);
+        let class = self.entry.kind.classes()[self.layer];
+        let fit = residual.and_then(|r| r.best(&covariates::of(self.entry, class)));
+        let Some(fit) = fit else {
+            let is_off = (factor[0] - 1.0).abs() > SURE * factor[1];
+            return is_off.then(|| {
+                format!("no pattern on file fits; the mean is {} times what it should be", shown(factor))
+            });
+        };
+        let part = 100.0 * fit.explained.min(1.0);
+        Some(match fit.pattern {
+            Pattern::Constant => self.constant(factor, ""),
+            Pattern::Power(name, power, [a, e]) => {
+                let raised = match power {
+                    1 => format!("proportional to {name}"),
+                    -1 => format!("proportional to 1/({name})"),
+                    p => format!("proportional to ({name})^{p}"),
+                };
+                let beside = if (a - 1.0).abs() > f64::max(4.0 * e, 0.01) {
+                    format!(", times {}{}", shown([a, e]), self.named([a, e]))
+                } else {
+                    String::new()
+                };
+                let what = match (name, power) {
+                    ("the cosine at the receiver", 1) => "a cosine applied twice: a factor ",
+                    ("the cosine at the receiver", -1) => "a cosine forgotten: a factor ",
+                    _ => "a factor ",
+                };
+                format!("looks like {what}{raised}{beside} ({part:.1} % of the residual)")
+            }
+            Pattern::Shift(dx, dy) => {
+                let columns = (dx != 0.0).then(|| format!("{} columns to the right", -0.0 + dx));
+                let rows = (dy != 0.0).then(|| format!("{} rows down", -0.0 + dy));
+                let by = columns.into_iter().chain(rows).collect::<Vec<_>>().join(" and ");
+                format!("looks like an image moved by {by} ({part:.1} % of the residual)")
+            }
+            Pattern::Flip(across, down) => {
+                let how = match (across, down) {
+                    (true, true) => "turned by 180°",
+                    (true, false) => "mirrored left and right",
+                    _ => "upside down",
+                };
+                format!("looks like an image {how} ({part:.1} % of the residual)")
+            }
+            Pattern::Frame(factor) => format!(
+                "looks like contributions lost or doubled at the edge of the frame: {part:.0} % of the residual is in its \
+                 outermost pixels, factor {factor:.2} there"
+            ),
+            Pattern::Dark => format!(
+                "looks like light through a surface that should stop it: {part:.0} % of the residual is where the truth has no light"
+            ),
+            Pattern::Bright(factor) => format!(
+                "looks like clamped contributions, or a mistake near folds: {part:.0} % of the residual is in the brightest tenth, factor \
+                 {factor:.2} there"
+            ),
+            Pattern::Edges => format!(
+                "looks like a mistake at edges: {part:.0} % of the residual is where the picture changes abruptly"
+            ),
+        })
+    }
+
+    fn named(&self, [factor, error]: [f64; 2]) -> String {
+        let angle = matches!(self.truth, Known::Means(_));
+        let bandwidth = angle.then(|| self.shape.bandwidths[0]);
+        let mut list = candidates(self.entry, bandwidth);
+        if let [.., last] = self.shape.bandwidths[..]
+            && self.shape.bandwidths.len() > 1
+        {
+            let count = self.shape.bandwidths.len() as f64;
+            let squares = self.shape.bandwidths.iter().map(|r| r * r).sum::<f64>() / count;
+            let name = "mean r² over the last r², the newest normalisation".to_owned();
+            let value = squares / (last * last);
+            list.push(constants::Named { name, value });
+        }
+        match names(&list, factor, error)[..] {
+            [] => String::new(),
+            ref near => format!(" = {}", near.join(" or ")),
+        }
+    }
+
+    fn constant(&self, factor: [f64; 2], also: &str) -> String {
+        format!("looks like a constant factor {}{}{also}", shown(factor), self.named(factor))
+    }
+
+    /// From class means at two bandwidths.
+    fn trend(&self, [mean, error]: [f64; 2], [truth, truth_at_half]: [f64; 2]) -> String {
+        let half = Shape {
+            bandwidths: self.shape.bandwidths.iter().map(|b| 0.5 * b).collect(),
+            paths_per_iteration: 2 * self.shape.paths_per_iteration,
+        };
+        let [mean_half, error_half] = self.drawn(&half, PHASE_HALF, VARIED).image_mean();
+        let ratio = [mean / truth, error / truth];
+        let at_half = [mean_half / truth_at_half, error_half / truth_at_half];
+        let both = format!("{} and {} at half the bandwidth", shown(ratio), shown(at_half));
+        let change = at_half[0] / ratio[0];
+        let spread = change * libm::hypot(ratio[1] / ratio[0], at_half[1] / at_half[0]);
+        let same = (change - 1.0).abs() < f64::max(4.0 * spread, 0.005);
+        let name = self.named(ratio);
+        let bias = [ratio[0] - 1.0, at_half[0] - 1.0];
+        if same && !name.is_empty() {
+            return self.constant(ratio, ", the same at half the bandwidth");
+        }
+        for (power, word) in [(1, "the bandwidth"), (-1, "1/bandwidth"), (2, "its square"), (-2, "1/(its square)")] {
+            let expected = pow2(-power);
+            if (change / expected - 1.0).abs() < f64::max(4.0 * spread / expected, 0.02) {
+                return format!("looks like a factor proportional to {word}: {both}");
+            }
+        }
+        if !name.is_empty() {
+            return format!("looks like a factor{name}: {both}");
+        }
+        let shrinks = (bias[1] / bias[0]).abs();
+        if shrinks > 0.75 {
+            let what = if same { "a constant factor, or " } else { "" };
+            return format!("looks like {what}a bias that does not shrink with the bandwidth: {both}");
+        }
+        format!("looks like a bias of the kernel that shrinks with the bandwidth: {both}")
+    }
+}
+
+fn pow2(exponent: i32) -> f64 {
+    libm::ldexp(1.0, exponent)
+}
+
+/// Means of each class at half of the bandwidths; `None` for classes that are not regularized.
+///
+/// # Errors
+/// A kernel or a bandwidth that does not fit.
+pub fn means_at_half(
+    truths: &mut Truths,
+    entry: &Entry,
+    pair: &Pair,
+    regions: &Regions,
+    kernel: Option<Kernel>,
+    shape: &Shape,
+) -> Result<Vec<Option<f64>>, Error> {
+    let half: Vec<f64> = shape.bandwidths.iter().map(|b| 0.5 * b).collect();
+    let kernel = kernel.and_then(|k| k.to_string().parse().ok());
+    // Only what is regularized, so that no image is computed for this.
+    let plan: Plan = pair
+        .plan
+        .iter()
+        .map(|class| match class.treatment {
+            Treatment::Exact(_) => crate::integrators::ClassPlan {
+                treatment: Treatment::NotSampled,
+                ..class.clone()
+            },
+            _ => class.clone(),
+        })
+        .collect();
+    let expected = truths.of(pair.scene, entry, &plan, regions, kernel, &half)?;
+    Ok(expected.into_iter().map(|e| e.map(|e| e.image.value)).collect())
+}
+
+/// Adds what they look like to the verdicts of a suite that are different.
+///
+/// # Errors
+/// A kernel or a bandwidth that does not fit.
+pub fn annotate(
+    request: &Request,
+    verdicts: &mut [Verdict],
+    truths: &mut Truths,
+) -> Result<(), Error> {
+    for verdict in verdicts.iter_mut().filter(|v| v.finding.state == State::Different) {
+        let scene = request.scenes.iter().position(|s| s.entry.name == verdict.scene);
+        let integrator = request.integrators.iter().position(|i| i.name() == verdict.integrator);
+        let (Some(scene), Some(integrator)) = (scene, integrator) else {
+            continue;
+        };
+        let entry = &request.scenes[scene].entry;
+        let classes = entry.kind.classes();
+        let Some(layer) = classes.iter().position(|c| c.to_string() == verdict.class) else {
+            continue;
+        };
+        let method = request.integrators[integrator].as_ref();
+        let plan = method.plan(entry);
+        let pair = Pair {
+            scene,
+            integrator,
+            plan,
+        };
+        let (width, height) = (entry.camera.width, entry.camera.height);
+        let pixels = u64::from(width) * u64::from(height);
+        let shape = first_shape(method, &pair, request.bandwidth, pixels);
+        let treatment = pair.plan[layer].treatment;
+        let means = match (treatment, verdict.truth) {
+            (Treatment::Regularized(_), Some(truth)) => {
+                let regions = Regions::image(width, height);
+                let half =
+                    means_at_half(truths, entry, &pair, &regions, request.kernel, &shape)?;
+                half[layer].map(|half| [truth.value, half])
+            }
+            _ => None,
+        };
+        let Some(truth) = Known::of(treatment, truths.image(scene), layer, means) else {
+            continue;
+        };
+        verdict.looks_like = of(&Subject {
+            entry,
+            prepared: method.prepare(entry).as_ref(),
+            layer,
+            shape: &shape,
+            seeds: Seeds::new(request.seed, &entry.name, method.name()),
+            truth,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,335 @@
+//! Patterns of a residual: what the measured image should be if a wrong factor, a wrong place or a wrong edge were all that is
+//! wrong with it.
+//!
+//! Each hypothesis predicts the measured image M from the true one T. Its misfit is χ² = Σ (M - P)²/v with v about the
+//! variance of M; that of noise alone is known from the replicates, N. A hypothesis explains 1 - (χ² - N)/(χ²₀ - N) of the
+//! residual, where χ²₀ is the misfit of P = T.
+
+use libm::pow;
+
+use super::covariates::Covariate;
+
+/// A measured image, what it should be, and how much it scatters.
+#[derive(Clone, Debug)]
+pub struct Residual<'a> {
+    /// Columns.
+    pub width: usize,
+    /// Measured mean [W m⁻² sr⁻¹].
+    pub measured: &'a [f64],
+    /// Truth.
+    pub truth: &'a [f64],
+    /// Weight of each pixel: 1/v.
+    weights: Vec<f64>,
+    /// N.
+    noise: f64,
+    /// χ²₀.
+    misfit: f64,
+}
+
+/// A pattern that fits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// What it is.
+    pub pattern: Pattern,
+    /// The part of the residual that it explains.
+    pub explained: f64,
+}
+
+/// What may be wrong with an image.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pattern {
+    /// A constant factor.
+    Constant,
+    /// A factor times a power of a covariate, by its name; the factor and its standard error.
+    Power(&'static str, i32, [f64; 2]),
+    /// Moved by columns to the right and rows downwards.
+    Shift(f64, f64),
+    /// Turned over: left and right, top and bottom.
+    Flip(bool, bool),
+    /// Pixels at the frame only; the factor there.
+    Frame(f64),
+    /// Light where the truth has none.
+    Dark,
+    /// The brightest pixels only; the factor there.
+    Bright(f64),
+    /// Edges of the picture only.
+    Edges,
+}
+
+/// Least part of a residual that a pattern with a number or two must explain.
+const EXPLAINED: f64 = 0.9;
+/// The same for a pattern that says where and not what.
+const EXPLAINED_BY_PLACE: f64 = 0.8;
+/// What a richer pattern must gain over a constant factor, in units of a pixel's noise.
+const GAIN: f64 = 30.0;
+/// Truth below this part of the mean is none.
+const NONE: f64 = 1e-3;
+
+impl<'a> Residual<'a> {
+    /// `variance` is that of each pixel's measured mean. `None` if the images are empty or there is nothing but noise.
+    pub fn new(
+        width: usize,
+        measured: &'a [f64],
+        truth: &'a [f64],
+        variance: &[f64],
+    ) -> Option<Self> {
+        let total: f64 = truth.iter().sum();
+        let seen: f64 = measured.iter().sum();
+        let mean = f64::max(total, seen) / truth.len() as f64;
+        // Counts of equal contributions: a variance proportional to the radiance, and a little where there is none.
+        let proportion = variance.iter().sum::<f64>() / f64::max(0.5 * (total + seen), 1e-300);
+        let weights: Vec<f64> = measured
+            .iter()
+            .zip(truth)
+            .map(|(&m, &t)| 1.0 / (proportion * (0.5 * (m + t) + NONE * mean)))
+            .collect();
+        let noise: f64 = variance.iter().zip(&weights).map(|(v, w)| v * w).sum();
+        let mut residual = Residual {
+            width,
+            measured,
+            truth,
+            weights,
+            noise,
+            misfit: 0.0,
+        };
+        residual.misfit = residual.of(|i| truth[i]);
+        let spread = GAIN * noise / truth.len() as f64;
+        (residual.misfit - noise > spread).then_some(residual)
+    }
+
+    fn height(&self) -> usize {
+        self.truth.len() / self.width
+    }
+
+    /// χ² of a prediction.
+    fn of(&self, predicted: impl Fn(usize) -> f64) -> f64 {
+        let term = |i: usize| {
+            let off = self.measured[i] - predicted(i);
+            self.weights[i] * off * off
+        };
+        (0..self.truth.len()).map(term).sum()
+    }
+
+    fn explained(&self, misfit: f64) -> f64 {
+        1.0 - (misfit - self.noise).max(0.0) / (self.misfit - self.noise)
+    }
+
+    /// The factor that fits a shape best over some pixels, and its standard error.
+    fn factor(&self, shape: &[f64], of: impl Fn(usize) -> bool) -> [f64; 2] {
+        let (mut product, mut square) = (0.0, 0.0);
+        for (i, &s) in shape.iter().enumerate() {
+            if of(i) {
+                product += self.weights[i] * s * self.measured[i];
+                square += self.weights[i] * s * s;
+            }
+        }
+        let per_pixel = self.noise / self.truth.len() as f64;
+        [product / square, libm::sqrt(per_pixel / square)]
+    }
+
+    /// The pattern that fits best, if one does.
+    pub fn best(&self, covariates: &[Covariate]) -> Option<Fit> {
+        let [factor, _] = self.factor(self.truth, |_| true);
+        let constant = self.of(|i| factor * self.truth[i]);
+        let mut best = (constant, Pattern::Constant);
+        let gain = GAIN * self.noise / self.truth.len() as f64;
+        let mut consider = |misfit: f64, pattern: Pattern| {
+            if misfit < best.0 && misfit < constant - gain {
+                best = (misfit, pattern);
+            }
+        };
+        for (misfit, pattern) in self.moved().into_iter().chain(self.powers(covariates)) {
+            consider(misfit, pattern);
+        }
+        let (misfit, pattern) = best;
+        let explained = self.explained(misfit);
+        if explained >= EXPLAINED {
+            return Some(Fit { pattern, explained });
+        }
+        self.places()
+    }
+
+    /// Factors that are powers of something.
+    fn powers(&self, covariates: &[Covariate]) -> Vec<(f64, Pattern)> {
+        let mut found = Vec::new();
+        for Covariate { name, values } in covariates {
+            // Where it is not known there must be little light.
+            let unknown = (0..self.truth.len()).filter(|&i| values[i].is_nan());
+            let lost: f64 = unknown.map(|i| self.truth[i]).sum();
+            if lost > 0.02 * self.truth.iter().sum::<f64>() {
+                continue;
+            }
+            for power in [1, -1, 2, -2, 3, 4] {
+                let shape: Vec<f64> = values
+                    .iter()
+                    .zip(self.truth)
+                    .map(|(&c, &t)| if c.is_nan() { 0.0 } else { t * pow(c, f64::from(power)) })
+                    .collect();
+                let factor = self.factor(&shape, |_| true);
+                let predicted = |i: usize| {
+                    if values[i].is_nan() { self.measured[i] } else { factor[0] * shape[i] }
+                };
+                found.push((self.of(predicted), Pattern::Power(name, power, factor)));
+            }
+        }
+        found
+    }
+
+    /// The image elsewhere or turned over.
+    fn moved(&self) -> Vec<(f64, Pattern)> {
+        const STEPS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
+        let (width, height) = (self.width, self.height());
+        let at = |x: f64, y: f64| {
+            let whole = (x >= 0.0) & (y >= 0.0) & (x < width as f64) & (y < height as f64);
+            if whole { self.truth[y as usize * width + x as usize] } else { 0.0 }
+        };
+        let mut found = Vec::new();
+        for dx in STEPS {
+            for dy in STEPS {
+                if (dx, dy) == (0.0, 0.0) {
+                    continue;
+                }
+                // Mean over the pixel of an image that is constant in each pixel.
+                let shifted = |i: usize| {
+                    let (x, y) = ((i % width) as f64 - dx, (i / width) as f64 - dy);
+                    let (low_x, low_y) = (f64::floor(x), f64::floor(y));
+                    let (fx, fy) = (x - low_x, y - low_y);
+                    let row = |y: f64| (1.0 - fx) * at(low_x, y) + fx * at(low_x + 1.0, y);
+                    (1.0 - fy) * row(low_y) + fy * row(low_y + 1.0)
+                };
+                found.push((self.of(shifted), Pattern::Shift(dx, dy)));
+            }
+        }
+        for (across, down) in [(true, false), (false, true), (true, true)] {
+            let turned = |i: usize| {
+                let (x, y) = (i % width, i / width);
+                let x = if across { width - 1 - x } else { x };
+                let y = if down { height - 1 - y } else { y };
+                self.truth[y * width + x]
+            };
+            found.push((self.of(turned), Pattern::Flip(across, down)));
+        }
+        found
+    }
+
+    /// Where the residual is, if it is all in a small part of the image.
+    fn places(&self) -> Option<Fit> {
+        let (width, height) = (self.width, self.height());
+        let mean = self.truth.iter().sum::<f64>() / self.truth.len() as f64;
+        let mut sorted = self.truth.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let bright = sorted[sorted.len() * 9 / 10];
+        let frame = |i: usize| {
+            let (x, y) = (i % width, i / width);
+            x == 0 || y == 0 || x == width - 1 || y == height - 1
+        };
+        let dark = |i: usize| self.truth[i] < NONE * mean;
+        let edge = |i: usize| {
+            let next = |j: usize| (self.truth[i] - self.truth[j]).abs() > 0.3 * mean;
+            let (x, y) = (i % width, i / width);
+            (x > 0 && next(i - 1))
+                || (x + 1 < width && next(i + 1))
+                || (y > 0 && next(i - width))
+                || (y + 1 < height && next(i + width))
+        };
+        let frame_factor = self.factor(self.truth, frame)[0];
+        let bright_factor = self.factor(self.truth, |i| self.truth[i] > bright)[0];
+        let bright = |i: usize| self.truth[i] > bright;
+        let places: [(Pattern, &dyn Fn(usize) -> bool); 4] = [
+            (Pattern::Frame(frame_factor), &frame),
+            (Pattern::Dark, &dark),
+            (Pattern::Bright(bright_factor), &bright),
+            (Pattern::Edges, &edge),
+        ];
+        for (pattern, is_there) in places {
+            let there = (0..self.truth.len()).filter(|&i| is_there(i)).count();
+            // The dark part of an image may be most of it: that there is light is what is wrong.
+            if there == 0 || (pattern != Pattern::Dark && 3 * there > self.truth.len()) {
+                continue;
+            }
+            let elsewhere = |i: usize| if is_there(i) { self.measured[i] } else { self.truth[i] };
+            // The noise of the place is fitted away too.
+            let explained = self.explained(self.of(elsewhere) + self.noise_of(is_there));
+            if explained >= EXPLAINED_BY_PLACE {
+                return Some(Fit { pattern, explained });
+            }
+        }
+        None
+    }
+
+    fn noise_of(&self, is_there: &dyn Fn(usize) -> bool) -> f64 {
+        let there = (0..self.truth.len()).filter(|&i| is_there(i)).count();
+        self.noise * there as f64 / self.truth.len() as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{philox, uniform};
+
+    const WIDTH: usize = 32;
+
+    fn picture() -> Vec<f64> {
+        (0..WIDTH * WIDTH)
+            .map(|i| {
+                let (x, y) = ((i % WIDTH) as f64, (i / WIDTH) as f64);
+                let spot = (x - 20.0) * (x - 20.0) + (y - 9.0) * (y - 9.0) < 30.0;
+                1.0 + 0.03 * x + 0.01 * y + if spot { 3.0 } else { 0.0 }
+            })
+            .collect()
+    }
+
+    fn cosine() -> Covariate {
+        Covariate {
+            name: "the cosine at the receiver",
+            values: (0..WIDTH * WIDTH).map(|i| 1.0 - 0.015 * (i % WIDTH) as f64).collect(),
+        }
+    }
+
+    /// Noise of 1 % of each pixel.
+    fn noisy(image: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let measured = image.iter().enumerate().map(|(i, &v)| {
+            let [a, b, c, d] = philox([i as u32, 0, 4, 0], [8, 9]);
+            v * (1.0 + 0.01 * libm::sqrt(6.0) * (uniform(a, b) + uniform(c, d) - 1.0))
+        });
+        (measured.collect(), image.iter().map(|v| 1e-4 * v * v).collect())
+    }
+
+    fn found(image: &[f64]) -> Option<Pattern> {
+        let (measured, variance) = noisy(image);
+        let truth = picture();
+        let residual = Residual::new(WIDTH, &measured, &truth, &variance)?;
+        residual.best(&[cosine()]).map(|f| f.pattern)
+    }
+
+    #[test]
+    fn each_pattern_is_told_from_the_others() {
+        let truth = picture();
+        let cosines = cosine().values;
+        let at = |x: i64, y: i64| {
+            let inside = x >= 0 && y >= 0;
+            if inside { truth[y as usize * WIDTH + x as usize] } else { 0.0 }
+        };
+        let of = |f: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..truth.len()).map(f).collect() };
+        assert_eq!(found(&truth), None);
+        assert_eq!(found(&of(&|i| 0.6 * truth[i])), Some(Pattern::Constant));
+        for power in [1, -1, 2] {
+            let image = of(&|i| truth[i] * pow(cosines[i], f64::from(power)));
+            match found(&image) {
+                Some(Pattern::Power(_, p, [factor, error])) => {
+                    assert!(p == power && (factor - 1.0).abs() < 5.0 * error, "{factor}");
+                }
+                other => panic!("{power}: {other:?}"),
+            }
+        }
+        let low = of(&|i| at((i % WIDTH) as i64, (i / WIDTH) as i64 - 1));
+        assert_eq!(found(&low), Some(Pattern::Shift(0.0, 1.0)));
+        let flipped = of(&|i| truth[(WIDTH - 1 - i / WIDTH) * WIDTH + i % WIDTH]);
+        assert_eq!(found(&flipped), Some(Pattern::Flip(false, true)));
+        let lost = of(&|i| if i % WIDTH == WIDTH - 1 { 0.0 } else { truth[i] });
+        assert!(matches!(found(&lost), Some(Pattern::Frame(_))));
+        let clamped = of(&|i| truth[i].min(3.0));
+        assert!(matches!(found(&clamped), Some(Pattern::Bright(f)) if f < 0.8));
+    }
+}
