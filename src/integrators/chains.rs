@@ -16,7 +16,8 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::Prepared;
 use super::camera_paths::add;
-use super::deviation::{Defect, Deviation};
+use super::defect::Defect;
+use super::deviation::Deviation;
 
 /// Light tracing along chains.
 pub(super) struct LightChains<L: Light, S> {

@@ -15,7 +15,8 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::Prepared;
 use super::camera_paths::add;
-use super::deviation::{Defect, Deviation};
+use super::defect::Defect;
+use super::deviation::Deviation;
 
 /// The direction at each vertex but the last.
 const DIRECTIONS: [Dimension; 3] = [

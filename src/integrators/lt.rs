@@ -22,7 +22,8 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{add, select};
 use super::chains::LightChains;
-use super::deviation::{Defect, Deviation, Sound};
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::furnace::LightWalks;
 use super::plan::{not_sampled, plan_of, walk_plan};
 use super::settings::Settings;

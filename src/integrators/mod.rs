@@ -7,6 +7,7 @@
 pub mod accumulate;
 mod camera_paths;
 mod chains;
+mod defect;
 mod deviation;
 mod fault;
 mod furnace;

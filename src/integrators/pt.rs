@@ -17,7 +17,8 @@ use crate::stream::{BLOCK, Lanes, Stream, zeros};
 
 use super::camera_paths::{CameraPaths, DIRECT};
 use super::chains::DirectLight;
-use super::deviation::{Defect, Deviation, Sound};
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::furnace::CameraWalks;
 use super::plan::{next_event_plan, not_sampled, plan_of, walk_plan};
 use super::settings::Settings;

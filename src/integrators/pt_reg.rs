@@ -21,7 +21,8 @@ use crate::geometry::turn::sin_cos_of_turns;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
-use super::deviation::{Defect, Deviation, Sound};
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::kernel::{AngleKernel, Kernel};
 use super::plan::{next_event_plan, plan_of};
 use super::settings::Settings;
