@@ -82,6 +82,8 @@ fn request(
         margin,
         level: LEVEL,
         checks: None,
+        most_paths: Effort::Quick.most_paths(),
+        variations: false,
         seed,
         bandwidth: BANDWIDTH,
         kernel: None,

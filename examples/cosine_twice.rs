@@ -29,6 +29,8 @@ fn main() -> Result<(), nephroid::error::Error> {
         margin,
         level: LEVEL,
         checks: None,
+        most_paths: Effort::Quick.most_paths(),
+        variations: false,
         seed: 1,
         bandwidth: 0.2,
         kernel: None,

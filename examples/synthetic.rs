@@ -164,6 +164,7 @@ fn suites(runs: u32) -> bool {
                     truth: ONE,
                     weight: 1.0,
                     most: 512,
+                    dependence: None,
                     too_bright: None,
                     parts: Vec::new(),
                 };

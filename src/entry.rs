@@ -47,8 +47,17 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// [`Error::UnknownScene`] if it is neither; what [`from_toml`] says about the file otherwise.
 pub fn load(scene: &str) -> Result<Entry, Error> {
+    let (file, text) = text(scene)?;
+    from_toml(&file, &text)
+}
+
+/// The file name and the TOML text of an entry.
+///
+/// # Errors
+/// [`Error::UnknownScene`] if it is neither in the catalogue nor a file; a file that cannot be read.
+pub fn text(scene: &str) -> Result<(String, String), Error> {
     if let Some((name, text)) = CATALOGUE.iter().find(|(name, _)| *name == scene) {
-        return from_toml(&format!("{name}.toml"), text);
+        return Ok((format!("{name}.toml"), (*text).to_owned()));
     }
     let path = Path::new(scene);
     if !scene.ends_with(".toml") && !path.exists() {
@@ -58,7 +67,7 @@ pub fn load(scene: &str) -> Result<Entry, Error> {
         });
     }
     let text = std::fs::read_to_string(path).map_err(|source| Error::read(scene, source))?;
-    from_toml(scene, &text)
+    Ok((scene.to_owned(), text))
 }
 
 #[derive(Deserialize)]

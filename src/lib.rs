@@ -21,4 +21,5 @@ pub mod report;
 pub mod stability;
 pub mod stream;
 pub mod truth;
+pub mod variation;
 pub mod verify;

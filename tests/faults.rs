@@ -74,6 +74,8 @@ fn request(integrators: Vec<Box<dyn Integrator>>, seed: u64, margin: f64) -> Req
         margin,
         level: LEVEL,
         checks: None,
+        most_paths: Effort::Quick.most_paths(),
+        variations: false,
         seed,
         bandwidth: BANDWIDTH,
         kernel: None,

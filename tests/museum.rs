@@ -200,6 +200,8 @@ fn a_users_own_method_is_diagnosed() {
         checks: None,
         seed: 1,
         bandwidth: 0.2,
+        most_paths: Effort::Quick.most_paths(),
+        variations: false,
         kernel: None,
     };
     let outcome = run(&request, &mut Truths::for_margin(0.02), &|_, _, _, _| {}).unwrap();

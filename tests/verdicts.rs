@@ -98,6 +98,7 @@ fn looking_often_does_not_raise_false_alarms() {
                     truth: ONE,
                     weight: 1.0,
                     most: 512,
+                    dependence: None,
                     too_bright: None,
                     parts: Vec::new(),
                 };
@@ -144,8 +145,8 @@ fn the_bound_of_the_truth_counts_against_equivalence() {
     assert!(passed < 290, "{passed}");
 }
 
-/// Sample sizes are planned for power 0.99 of "different" at the margin and 0.9999 of "equivalent" at no bias. Below 0.975 and
-/// 0.997 in 2000 runs with probability under 1e-6.
+/// Sample sizes are planned for power 0.9 of "different" at the margin and of "equivalent" at no bias. Below 0.86 in 2000 runs
+/// with probability under 1e-6.
 #[test]
 fn planned_sample_sizes_have_the_power_they_were_planned_for() {
     let levels = Levels::shared(1e-6, 1e-3, 33);
@@ -160,9 +161,9 @@ fn planned_sample_sizes_have_the_power_they_were_planned_for() {
             };
             (0..2_000).filter(is).count()
         };
-        assert!(count(1.0, State::Equivalent) > 1_994);
-        assert!(count(1.0 + margin, State::Different) > 1_950);
-        assert!(count(1.0 - margin, State::Different) > 1_950);
+        assert!(count(1.0, State::Equivalent) > 1_720);
+        assert!(count(1.0 + margin, State::Different) > 1_720);
+        assert!(count(1.0 - margin, State::Different) > 1_720);
     }
 }
 
@@ -174,7 +175,7 @@ fn the_minimum_detectable_bias_is_detected_nine_times_of_ten() {
         equivalent: 1e-5,
     };
     let mut random = Random::new(17);
-    for replicates in [32, 50, 400] {
+    for replicates in [256, 400, 1000] {
         let f = decide(&sample(1.0, 0.05, replicates), ONE, 0.02, levels);
         let bias = f.minimum_detectable_bias.unwrap();
         let found = |_: &usize| {

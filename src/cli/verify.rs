@@ -51,6 +51,13 @@ pub struct Args {
     /// Mollifier: cone, epanechnikov or vmf for an angle, disc or epanechnikov for a radius. Default: cone, disc.
     #[arg(long, value_name = "K")]
     kernel: Option<Kernel>,
+    /// The most paths of one scene and integrator; what is undecided then is said to be. Default: the effort's.
+    #[arg(long, value_name = "PATHS", value_parser = super::count)]
+    budget: Option<u64>,
+    /// Also run each integrator on changed scenes, of which the change of the image is known: scaled, moved, brighter,
+    /// finer, cropped, with more and fewer paths. Always from standard on, if nothing is named.
+    #[arg(long)]
+    variations: bool,
     /// Share the error probabilities among at least this many checks. Only the commands that reproduce a verdict need
     /// it.
     #[arg(long, value_name = "N", value_parser = super::count)]
@@ -157,6 +164,8 @@ fn request(args: &Args) -> Result<Request, Error> {
         margin: args.margin.unwrap_or(args.effort.margin()),
         level: args.level,
         checks: args.checks,
+        most_paths: args.budget.unwrap_or(args.effort.most_paths()),
+        variations: args.variations || (!explicit && args.effort != Effort::Quick),
         seed: args.seed,
         bandwidth: args.bandwidth,
         kernel: args.kernel,

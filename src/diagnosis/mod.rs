@@ -329,7 +329,11 @@ pub fn annotate(
     verdicts: &mut [Verdict],
     truths: &mut Truths,
 ) -> Result<(), Error> {
-    for verdict in verdicts.iter_mut().filter(|v| v.finding.state == State::Different) {
+    // A changed scene's verdict says by which change it is.
+    let is_told = |v: &&mut Verdict| {
+        v.finding.state == State::Different && v.variation.is_none()
+    };
+    for verdict in verdicts.iter_mut().filter(is_told) {
         let scene = request.scenes.iter().position(|s| s.entry.name == verdict.scene);
         let integrator = request.integrators.iter().position(|i| i.name() == verdict.integrator);
         let (Some(scene), Some(integrator)) = (scene, integrator) else {
@@ -348,8 +352,7 @@ pub fn annotate(
             plan,
         };
         let (width, height) = (entry.camera.width, entry.camera.height);
-        let pixels = u64::from(width) * u64::from(height);
-        let shape = first_shape(method, &pair, request.bandwidth, pixels);
+        let shape = first_shape(method, &pair.plan, request.bandwidth, entry);
         let treatment = pair.plan[layer].treatment;
         let means = match (treatment, verdict.truth) {
             (Treatment::Regularized(_), Some(truth)) => {

@@ -111,6 +111,10 @@ pub struct Tally {
     mean: f64,
     /// Sums of the second and third powers of what is off the mean.
     powers: [f64; 2],
+    /// The first and the last value, and the sum of products of neighbours, all from the first value.
+    first: f64,
+    last: f64,
+    neighbours: f64,
     fewest: u64,
     contributions: u64,
     invalid: Invalid,
@@ -130,6 +134,11 @@ impl Tally {
             self.invalid.not_finite += found.not_finite;
             self.invalid.negative += found.negative;
         }
+        if index == 0 {
+            self.first = x;
+        }
+        self.neighbours += (x - self.first) * self.last;
+        self.last = x - self.first;
         // Updates of central powers [Pébay 2008].
         let before = self.count as f64;
         self.count += 1;
@@ -146,6 +155,14 @@ impl Tally {
             self.fewest.min(contributions)
         };
         self.contributions += contributions;
+    }
+
+    /// Correlation of replicates with their predecessors: zero up to 1/√n if seeds are independent.
+    pub fn correlation(&self) -> f64 {
+        let n = self.count as f64;
+        let off = self.mean - self.first;
+        let covariance = self.neighbours - off * (2.0 * n * off - self.last) + (n - 1.0) * off * off;
+        covariance / self.powers[0]
     }
 
     /// The sample so far.
@@ -252,6 +269,9 @@ mod tests {
         let skewness = third / libm::pow(0.99 * variance, 1.5);
         assert!((s.mean - mean).abs() < 1e-9 && (s.variance / variance - 1.0).abs() < 1e-9);
         assert!((s.skewness - skewness).abs() < 1e-7, "{} {skewness}", s.skewness);
+        let pairs = values.windows(2).map(|w| (w[0] - mean) * (w[1] - mean));
+        let correlation = pairs.sum::<f64>() / (99.0 * variance);
+        assert!((tally.correlation() - correlation).abs() < 1e-9);
     }
 
     #[test]

@@ -11,7 +11,8 @@
 
 use nephroid_analytic::camera::Bounded;
 
-use super::evidence::Sample;
+use super::distributions::student_survival;
+use super::evidence::{FEWEST_REPLICATES, Sample};
 
 /// Probability that a suite of verdicts on correct integrators contains any false "different", by default.
 pub const LEVEL: f64 = 1e-6;
@@ -57,4 +58,15 @@ pub fn equivalence_p(sample: &Sample, truth: Bounded, margin: f64) -> f64 {
     let below = (truth.value - truth.error) * (1.0 + margin) - sample.mean;
     let p = |distance: f64, upper: bool| sample.tail(upper).survival(distance / error);
     p(above, true).max(p(below, false))
+}
+
+/// p-value of "replicates are not independent of their predecessors", two-sided, from their correlation: √n times it is
+/// about normal. Products have heavier tails than what is multiplied; a quarter of the degrees of freedom allows for
+/// that.
+pub fn dependence_p(correlation: f64, replicates: usize) -> f64 {
+    if replicates < 4 * FEWEST_REPLICATES || !correlation.is_finite() {
+        return 1.0;
+    }
+    let n = replicates as f64;
+    (2.0 * student_survival(correlation.abs() * libm::sqrt(n), 0.25 * n)).min(1.0)
 }

@@ -60,13 +60,13 @@ impl Tail {
         student_survival(y, self.dof) * exp(self.growth * y * y * y)
     }
 
-    /// Where [`Tail::far`] stops falling: the density over the survival function, about (ν + 1) y / (ν + y²), meets the
-    /// slope 3 g y² of the exponent. Infinite without skewness.
+    /// Up to where [`Tail::far`] certainly falls: the density over the survival function, at least (ν - 1) y / (ν + y²)
+    /// (from P(t > y) < E[t; t > y]/y), is above the slope 3 g y² of the exponent. Infinite without skewness.
     fn turning_point(&self) -> f64 {
         if self.growth == 0.0 {
             return f64::INFINITY;
         }
-        let rises = |y: f64| 3.0 * self.growth * y * (self.dof + y * y) > self.dof + 1.0;
+        let rises = |y: f64| 3.0 * self.growth * y * (self.dof + y * y) > self.dof - 1.0;
         let (mut low, mut high) = (0.0, 1e4);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -81,10 +81,10 @@ impl Tail {
 
     /// An upper bound of the probability that the statistic exceeds `x`. NaN for a NaN.
     pub fn survival(&self, x: f64) -> f64 {
-        let plain = student_survival(x.min(NEAR), self.dof);
         if !(x > NEAR) {
-            return plain;
+            return student_survival(x, self.dof);
         }
+        let plain = student_survival(NEAR, self.dof);
         plain.min(self.far(x.min(self.turning_point().max(NEAR))))
     }
 

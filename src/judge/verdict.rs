@@ -160,6 +160,8 @@ pub struct Case {
     pub weight: f64,
     /// Replicates that there may be in the end: the power is that of going on so far.
     pub most: u64,
+    /// p-value of "replicates are independent", and its weight.
+    pub dependence: Option<(f64, f64)>,
     /// p-value of "not too bright" at any time, and its weight.
     pub too_bright: Option<(f64, f64)>,
     /// The parts.
@@ -187,6 +189,9 @@ impl Default for Spent {
     }
 }
 
+/// The place of a bias that is none: replicates that depend on each other.
+pub const SEEDS: &str = "seeds";
+
 /// Decides about the whole image alone, at a single look: `margin` is relative to the truth.
 pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> Finding {
     let case = Case {
@@ -194,6 +199,7 @@ pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> F
         truth,
         weight: 1.0,
         most: sample.replicates as u64,
+        dependence: None,
         too_bright: None,
         parts: Vec::new(),
     };
@@ -247,6 +253,9 @@ pub fn decide_at(
     if unmet.is_none() {
         let p = difference_p(sample, truth) / (case.weight * share);
         spend(spent, p, None);
+        if let Some((p, weight)) = case.dependence {
+            spend(spent, p / (weight * share), Some(SEEDS));
+        }
         spent.equivalent = spent.equivalent.min(equivalent(sample, truth));
     }
     let tested = || case.parts.iter().filter(|p| unmet_condition(&p.sample).is_none());
@@ -271,6 +280,9 @@ pub fn decide_at(
     let finding = figures(case, margin, levels, share, state);
     let place = spent.place.clone().filter(|_| bias_established);
     let reason = match (&place, state) {
+        (Some(place), State::Different) if place == SEEDS => {
+            "replicates depend on their predecessors: their seeds do not make them independent".to_owned()
+        }
         (Some(place), State::Different) => {
             let part = case.parts.iter().find(|p| p.place == *place);
             part.map_or_else(String::new, |p| about_part(p))

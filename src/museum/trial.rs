@@ -75,13 +75,12 @@ impl Hall {
         let sound = by_name(stand.integrator, &Settings::default())?;
         let plan = sound.plan(&entry);
         let (width, height) = (entry.camera.width, entry.camera.height);
-        let pixels = u64::from(width) * u64::from(height);
         let pair = Pair {
             scene,
             integrator: 0,
             plan,
         };
-        let shape = first_shape(sound.as_ref(), &pair, stand.bandwidth, pixels);
+        let shape = first_shape(sound.as_ref(), &pair.plan, stand.bandwidth, &entry);
         let regions = Regions::quadtree(width, height);
         let kernel = None;
         let expected =

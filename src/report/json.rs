@@ -34,6 +34,7 @@ fn verdict(v: &Verdict) -> Value {
     let f = &v.finding;
     json!({
         "scene": v.scene,
+        "variation": v.variation,
         "integrator": v.integrator,
         "class": v.class,
         "region": v.region,

@@ -7,7 +7,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::text;
 use crate::judge::verdict::State;
-use crate::verify::verdicts::{Outcome, Verdict};
+use crate::verify::verdicts::{Outcome, Verdict, WHOLE_IMAGE};
 
 /// The whole answer.
 ///
@@ -19,11 +19,14 @@ pub fn outcome(o: &Outcome) -> Result<String, String> {
     let mut suites: Vec<TestSuite> = Vec::new();
     let (mut scene, mut pair) = (None, None);
     for v in &o.verdicts {
-        if scene.replace(v.scene.as_str()) != Some(v.scene.as_str()) {
-            suites.push(TestSuite::new(v.scene.as_str()));
+        let changed = v.variation.is_some();
+        if scene.replace((&v.scene, changed)) != Some((&v.scene, changed)) {
+            let suffix = if changed { ", changed" } else { "" };
+            suites.push(TestSuite::new(format!("{}{suffix}", v.scene)));
         }
         // One run serves all cases of a pair of scene and integrator: the first one has its time.
-        let first = pair.replace((&v.scene, &v.integrator)) != Some((&v.scene, &v.integrator));
+        let this = (&v.scene, &v.integrator, &v.variation);
+        let first = pair.replace(this) != Some(this);
         if let Some(suite) = suites.last_mut() {
             suite.add_test_case(case(v, if first { v.seconds } else { 0.0 }));
         }
@@ -48,7 +51,9 @@ fn case(v: &Verdict, seconds: f64) -> TestCase {
         status.set_type(f.state.word());
         status.set_description(format!("again: {}", v.command));
     }
-    let mut case = TestCase::new(format!("{}/{}/{}", v.integrator, v.class, v.region), status);
+    // The name does not depend on what was found: the region of a bias is in the message.
+    let place = v.variation.as_deref().unwrap_or(WHOLE_IMAGE);
+    let mut case = TestCase::new(format!("{}/{}/{place}", v.integrator, v.class), status);
     case.set_classname(v.scene.as_str())
         .set_time(duration(seconds));
     case

@@ -23,7 +23,10 @@ pub fn outcome(o: &Outcome) -> String {
         let _ = writeln!(
             page,
             "| {} | {} | {} | {} | {} | {detectable} | {:.1e} | {} |",
-            v.scene,
+            match &v.variation {
+                Some(variation) => format!("{}, {variation}", v.scene),
+                None => v.scene.clone(),
+            },
             v.integrator,
             v.class,
             f.state.word(),

@@ -2,6 +2,7 @@
 
 use core::fmt::Write as _;
 
+use crate::judge::power::DETECTION_POWER;
 use crate::judge::verdict::{Finding, State};
 use crate::verify::verdicts::{NotRun, Outcome, Verdict};
 
@@ -9,9 +10,13 @@ use crate::verify::verdicts::{NotRun, Outcome, Verdict};
 pub fn outcome(outcome: &Outcome) -> String {
     let mut text = format!("{HEAD}\n");
     let mut previous = None;
+    let mut variation = None;
     for v in &outcome.verdicts {
-        let pair = (v.scene.as_str(), v.integrator.as_str());
+        let pair = (v.scene.as_str(), v.integrator.as_str(), v.variation.as_deref());
         let first = previous.replace(pair) != Some(pair);
+        if let Some(name) = pair.2.filter(|n| variation.replace(*n) != Some(*n)) {
+            let _ = writeln!(text, "{name}:");
+        }
         let _ = writeln!(text, "{}", line(v, first));
         for detail in details(v) {
             let _ = writeln!(text, "    {detail}");
@@ -146,10 +151,21 @@ pub fn summary(o: &Outcome) -> String {
         .filter(|&s| count(s) > 0 || s == State::Equivalent)
         .map(|s| format!("{} {}", count(s), s.word()))
         .collect();
+    let weak: Vec<_> = o
+        .verdicts
+        .iter()
+        .filter(|v| v.finding.power.is_some_and(|p| p < DETECTION_POWER))
+        .map(|v| format!("{} {} {}", v.scene, v.integrator, v.class))
+        .collect();
+    let weak = if weak.is_empty() {
+        String::new()
+    } else {
+        format!("\nPower below {DETECTION_POWER} at the margin: {}.", weak.join(", "))
+    };
     format!(
         "{}. Effort {}, α = r = {}, seed {}, {:.1} s.\n\
          Equivalent: within {} of the truth; a suite says so falsely with probability at most {:e}.\n\
-         Different: a suite of correct integrators says so with probability at most {:e}, shared by {}.",
+         Different: a suite of correct integrators says so with probability at most {:e}, shared by {}.{weak}",
         counts.join(", "),
         o.effort,
         o.bandwidth,

@@ -9,6 +9,7 @@ use crate::integrators::Prepared;
 use crate::judge::betting::Bet;
 use crate::judge::evidence::{Invalid, Replicate, Sample, Tally};
 use crate::judge::heavy::{self, TailIndex};
+use crate::judge::hypotheses::dependence_p;
 use crate::judge::spending::{Look, looks};
 use crate::judge::verdict::{Case, Finding, Part, Spent, State, decide_at};
 use crate::regions::Regions;
@@ -17,8 +18,9 @@ use super::replicates::Shape;
 
 /// Replicates that are held in memory at a time.
 const AT_A_TIME: u32 = 256;
-/// Weight of the betting test in the image's share of a check's error probability.
+/// Weights of the betting test and of the test of independence in the image's share of a check's error probability.
 const BETTING: f64 = 0.1;
+const INDEPENDENCE: f64 = 0.1;
 
 /// What is checked: a class, or the sum of those claimed.
 struct Subject {
@@ -132,7 +134,7 @@ pub fn gather_until(
             subject.decide(regions, demand, look, &size);
         }
         let suffices = end == End::FirstDifference && subjects.iter().any(Subject::is_different);
-        if suffices || subjects.iter().all(Subject::is_decided) {
+        if suffices || subjects.iter().all(Subject::is_settled) {
             break;
         }
     }
@@ -238,6 +240,12 @@ impl Subject {
         self.finding.as_ref().is_some_and(|f| f.state == State::Different)
     }
 
+    /// Whether it is decided, or more replicates would not help.
+    fn is_settled(&self) -> bool {
+        let open = |f: &Finding| f.state == State::Undecided && f.replicates_needed.is_some();
+        self.finding.as_ref().is_some_and(|f| !open(f))
+    }
+
     fn decide(&mut self, regions: &Regions, demand: Demand, look: Look, size: &Size) {
         // A verdict stands; the sample goes on for the sake of others.
         if self.is_decided() {
@@ -256,8 +264,12 @@ impl Subject {
         let case = Case {
             sample: samples[0],
             truth: self.expected.image,
-            weight: weight * (1.0 - BETTING),
+            weight: weight * (1.0 - BETTING - INDEPENDENCE),
             most: u64::from(size.most),
+            dependence: Some((
+                dependence_p(self.tallies[0].correlation(), samples[0].replicates),
+                weight * INDEPENDENCE,
+            )),
             too_bright: Some((self.bet.p(), weight * BETTING)),
             parts: parts.collect(),
         };
@@ -268,8 +280,11 @@ impl Subject {
         if is_missing && paths < PATHS_BEFORE_MISSING {
             finding = Finding::bare(
                 State::Undecided,
-                format!("no contribution in {paths} paths; {PATHS_BEFORE_MISSING} are drawn before a class is called missing"),
+                format!(
+                    "no contribution in {paths} paths; {PATHS_BEFORE_MISSING} are drawn before a class is called missing"
+                ),
             );
+            finding.replicates_needed = Some(PATHS_BEFORE_MISSING.div_ceil(size.shape.paths()));
         }
         self.finding = Some(finding);
     }

@@ -3,6 +3,7 @@
 pub mod effort;
 pub mod expected;
 pub mod gather;
+pub mod metamorphic;
 pub mod replicates;
 pub mod run;
 pub mod sizing;

@@ -2,15 +2,19 @@
 
 use std::time::Instant;
 
+use nephroid_analytic::bandwidth::Kernel as TruthKernel;
+use nephroid_analytic::scene::Entry;
+
 use super::effort::Effort;
-use super::expected::Truths;
-use super::gather::gather;
+use super::expected::{Expected, Truths};
+use super::gather::{Judged, gather};
+use super::metamorphic;
 use super::replicates::{Canvas, Seeds, Shape};
 use super::sizing::Demand;
 use super::suite::{Coverage, LeftOut, Pair, Subject, select};
 use super::verdicts::{ALL_CLASSES, NotRun, Outcome, Verdict, WHOLE_IMAGE};
 use crate::error::Error;
-use crate::integrators::{Integrator, Kernel, Technique, Treatment};
+use crate::integrators::{Integrator, Kernel, Plan, Technique, Treatment};
 use crate::judge::family::holm;
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
 use crate::regions::Regions;
@@ -44,6 +48,10 @@ pub struct Request {
     pub seed: u64,
     /// Angle α [rad] or radius r [m].
     pub bandwidth: f64,
+    /// The most paths of one pair of scene and integrator.
+    pub most_paths: u64,
+    /// Whether integrators are also run on changed scenes, of which the change of the image is known.
+    pub variations: bool,
     /// The mollifier; `None` for each method's default.
     pub kernel: Option<Kernel>,
 }
@@ -66,15 +74,27 @@ pub fn run(
             reason: l.reason.clone(),
         }));
     }
-    let planned: u64 = pairs.iter().map(Pair::checks).sum();
+    let varied = metamorphic::jobs(request, &pairs);
+    let planned: u64 = pairs.iter().map(Pair::checks).sum::<u64>()
+        + varied.iter().map(|v| pairs[v.pair].checks()).sum::<u64>();
     let checks = planned.max(request.checks.unwrap_or(0));
     let levels = Levels::shared(request.level, EQUIVALENCE_LEVEL, checks);
     let mut verdicts = Vec::new();
+    let of = pairs.len() + varied.len();
     for (position, pair) in pairs.iter().enumerate() {
         let scene = &request.scenes[pair.scene].entry.name;
         let integrator = request.integrators[pair.integrator].name();
-        progress(position, pairs.len(), scene, integrator);
+        progress(position, of, scene, integrator);
         verdicts.extend(run_pair(request, pair, levels, checks, truths)?);
+    }
+    for (position, varied) in (pairs.len()..).zip(&varied) {
+        let pair = &pairs[varied.pair];
+        let integrator = request.integrators[pair.integrator].name();
+        progress(position, of, &varied.name(), integrator);
+        verdicts.extend(varied.run(request, pair, levels, checks, truths)?);
+    }
+    if !request.variations {
+        not_run.extend(metamorphic::left_out(request, &pairs));
     }
     settle(&mut verdicts, request.level, checks);
     crate::diagnosis::annotate(request, &mut verdicts, truths)?;
@@ -111,6 +131,26 @@ fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
     }
 }
 
+/// One integrator on one scene, as it is run.
+pub(super) struct Job<'a> {
+    /// Position of the integrator.
+    pub integrator: usize,
+    /// What the scene is called on the command line.
+    pub argument: &'a str,
+    /// The scene.
+    pub entry: &'a Entry,
+    /// What the integrator does about its classes.
+    pub plan: &'a Plan,
+    /// What a replicate consists of, at first.
+    pub shape: Shape,
+    /// The areas of its image.
+    pub regions: Regions,
+    /// What each class should be.
+    pub expected: Vec<Option<Expected>>,
+    /// How the scene was changed; `None` if it was not.
+    pub variation: Option<String>,
+}
+
 fn run_pair(
     request: &Request,
     pair: &Pair,
@@ -122,50 +162,90 @@ fn run_pair(
     let subject = &request.scenes[pair.scene];
     let integrator = request.integrators[pair.integrator].as_ref();
     let entry = &subject.entry;
-    let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
-    let shape = first_shape(integrator, pair, request.bandwidth, pixels);
-    let kernel = request.kernel.and_then(|k| k.to_string().parse().ok());
-    let (width, height) = (entry.camera.width, entry.camera.height);
-    let regions = Regions::quadtree(width, height);
-    let bandwidths = &shape.bandwidths;
-    let expected = truths.of(pair.scene, entry, &pair.plan, &regions, kernel, bandwidths)?;
-    let canvas = Canvas {
-        width,
-        height,
-        classes: entry.kind.classes(),
-    };
-    let demand = Demand {
-        margin: request.margin,
-        levels,
-        most_paths: request.effort.most_paths(),
-    };
-    let seeds = Seeds::new(request.seed, &entry.name, integrator.name());
-    let evidence = gather(
-        || integrator.prepare(entry),
-        canvas,
+    let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
+    let regions = Regions::quadtree(entry.camera.width, entry.camera.height);
+    let expected = truths.of(
+        pair.scene,
+        entry,
+        &pair.plan,
         &regions,
+        request.truth_kernel(),
+        &shape.bandwidths,
+    )?;
+    let job = Job {
+        integrator: pair.integrator,
+        argument: &subject.argument,
+        entry,
+        plan: &pair.plan,
         shape,
-        seeds,
-        &expected,
-        demand,
-    );
-    let seconds = started.elapsed().as_secs_f64();
-    let command = command(request, &subject.argument, integrator.name(), checks);
-    let per_replicate = evidence.size.shape.paths();
-    let replicates = evidence.replicates;
-    let verdicts = evidence
-        .judged
-        .into_iter()
-        .map(|judged| {
-            let treatment = judged.class.map(|c| pair.plan[c].treatment);
+        regions,
+        expected,
+        variation: None,
+    };
+    Ok(job.run(request, levels, checks, started))
+}
+
+impl Request {
+    /// The mollifier, as the truth knows it.
+    pub(super) fn truth_kernel(&self) -> Option<TruthKernel> {
+        self.kernel.and_then(|k| k.to_string().parse().ok())
+    }
+}
+
+impl Job<'_> {
+    /// Runs it and judges it. `started` is when its truth began to be computed.
+    pub fn run(
+        self,
+        request: &Request,
+        levels: Levels,
+        checks: u64,
+        started: Instant,
+    ) -> Vec<Verdict> {
+        let integrator = request.integrators[self.integrator].as_ref();
+        let entry = self.entry;
+        let canvas = Canvas {
+            width: entry.camera.width,
+            height: entry.camera.height,
+            classes: entry.kind.classes(),
+        };
+        let demand = Demand {
+            margin: request.margin,
+            levels,
+            most_paths: request.most_paths,
+        };
+        let mut identity = entry.name.clone();
+        if let Some(variation) = &self.variation {
+            identity.push('/');
+            identity.push_str(variation);
+        }
+        let seeds = Seeds::new(request.seed, &identity, integrator.name());
+        let evidence = gather(
+            || integrator.prepare(entry),
+            canvas,
+            &self.regions,
+            self.shape,
+            seeds,
+            &self.expected,
+            demand,
+        );
+        let seconds = started.elapsed().as_secs_f64();
+        let mut command = command(request, self.argument, integrator.name(), checks);
+        if self.variation.is_some() {
+            command.push_str(" --variations");
+        }
+        let per_replicate = evidence.size.shape.paths();
+        let replicates = evidence.replicates;
+        let verdict = |judged: Judged| {
+            let treatment = judged.class.map(|c| self.plan[c].treatment);
             let regularized = match treatment {
                 Some(t) => is_regularized(t),
-                None => pair.plan.iter().any(|c| is_regularized(c.treatment)),
+                None => self.plan.iter().any(|c| is_regularized(c.treatment)),
             };
-            let class = judged.class.map(|c| pair.plan[c].class.to_string());
+            let class = judged.class.map(|c| self.plan[c].class.to_string());
             let place = judged.finding.place.clone();
             Verdict {
                 scene: entry.name.clone(),
+                variation: self.variation.clone(),
                 integrator: integrator.name().to_owned(),
                 class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
                 region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
@@ -185,8 +265,9 @@ fn run_pair(
                 seconds,
                 command: command.clone(),
             }
-        });
-    Ok(verdicts.collect())
+        };
+        evidence.judged.into_iter().map(verdict).collect()
+    }
 }
 
 fn is_regularized(treatment: Treatment) -> bool {
@@ -194,10 +275,16 @@ fn is_regularized(treatment: Treatment) -> bool {
 }
 
 /// The replicates that pilots start with.
-pub(crate) fn first_shape(integrator: &dyn Integrator, pair: &Pair, bandwidth: f64, pixels: u64) -> Shape {
+pub(crate) fn first_shape(
+    integrator: &dyn Integrator,
+    plan: &Plan,
+    bandwidth: f64,
+    entry: &Entry,
+) -> Shape {
+    let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
     let schedule = integrator.schedule(bandwidth);
     let merges = |t: Treatment| t == Treatment::Regularized(Technique::Merge);
-    let iterations = if pair.plan.iter().any(|c| merges(c.treatment)) {
+    let iterations = if plan.iter().any(|c| merges(c.treatment)) {
         MERGING_ITERATIONS
     } else {
         1
@@ -231,6 +318,11 @@ fn command(request: &Request, scene: &str, integrator: &str, checks: u64) -> Str
         "--level",
         request.level.to_string(),
         crate::judge::hypotheses::LEVEL.to_string(),
+    );
+    add(
+        "--budget",
+        request.most_paths.to_string(),
+        request.effort.most_paths().to_string(),
     );
     add(
         "--bandwidth",

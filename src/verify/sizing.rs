@@ -5,7 +5,7 @@ use nephroid_analytic::camera::Bounded;
 
 use super::replicates::{Canvas, Seeds, Shape, run};
 use crate::integrators::Prepared;
-use crate::judge::evidence::{FEWEST_CONTRIBUTIONS, Replicate, Sample};
+use crate::judge::evidence::{FEWEST_CONTRIBUTIONS, FEWEST_REPLICATES, Replicate, Sample};
 use crate::judge::hypotheses::Levels;
 use crate::judge::power::{FEWEST_PLANNED, replicates_needed};
 use crate::regions::Regions;
@@ -92,7 +92,7 @@ pub fn plan(
         shape.paths_per_iteration *= factor;
     }
     shape.paths_per_iteration *= factor;
-    let most = (demand.most_paths / shape.paths()).clamp(FEWEST_PLANNED, MOST_REPLICATES);
+    let most = (demand.most_paths / shape.paths()).clamp(FEWEST_REPLICATES as u64, MOST_REPLICATES);
     let samples = checks
         .iter()
         .map(|c| (Sample::of_layers(&pilot, &c.layers, 0), c.truth));

@@ -17,6 +17,8 @@ pub const WHOLE_IMAGE: &str = "image";
 pub struct Verdict {
     /// The scene's name.
     pub scene: String,
+    /// How the scene was changed; `None` if it was not.
+    pub variation: Option<String>,
     /// The integrator's name.
     pub integrator: String,
     /// The path class, or `all` for the sum of those claimed.
