@@ -45,6 +45,8 @@ struct Point {
     light: Option<[f64; 2]>,
     eye: Option<[f64; 2]>,
     sensor: f64,
+    /// Reflectance or transmittance on the way from the light, and to the eye.
+    weight: f64,
 }
 
 fn grid(camera: &Pinhole, of: impl Fn(DVec3) -> Option<Point>) -> Vec<Option<Point>> {
@@ -81,6 +83,10 @@ fn collected(points: &[Option<Point>]) -> Vec<Covariate> {
             values(&|p| p.eye.map(|e| e[1])),
         ),
         ("the cosine at the sensor", values(&|p| Some(p.sensor))),
+        (
+            "the reflectance or transmittance on the way",
+            values(&|p| Some(p.weight)),
+        ),
     ];
     all.into_iter()
         .map(|(name, values)| Covariate { name, values })
@@ -105,40 +111,42 @@ fn towards_light<L: Light>(light: &L, vertex: DVec3) -> [f64; 2] {
     [cosine, if end < f64::INFINITY { distance } else { f64::NAN }]
 }
 
-/// Mean cosine of arrival by pixel, from photons that `land` where the pinhole can see them.
+/// Mean cosine of arrival and mean weight by pixel, from photons that `land` where the pinhole can see them.
 fn arrivals(
     camera: &Pinhole,
     emitter: &impl Emitter,
-    land: impl Fn(DVec3, DVec3) -> Option<(DVec3, f64)>,
-) -> Vec<f64> {
+    land: impl Fn(DVec3, DVec3) -> Option<(DVec3, f64, f64)>,
+) -> Vec<[f64; 2]> {
     let (columns, rows) = camera.size();
-    let mut sums = vec![[0.0; 2]; (columns * rows) as usize];
+    let mut sums = vec![[0.0; 3]; (columns * rows) as usize];
     let stream = Stream::new(0x6469_6167, 0);
     let (mut u, mut v) = (zeros(), zeros());
     for first in (0..PHOTONS).step_by(BLOCK) {
         stream.pairs(first, Dimension::Emission, &mut u, &mut v);
         for (&u, &v) in u.iter().zip(&v) {
             let (origin, direction) = emitter.ray(u, v);
-            let Some((vertex, cosine)) = land(origin, direction) else {
+            let Some((vertex, cosine, weight)) = land(origin, direction) else {
                 continue;
             };
             let (column, row, density) = camera.project_floor(vertex);
             if density > 0.0 {
                 let pixel = row as usize * columns as usize + column as usize;
-                if let Some([sum, count]) = sums.get_mut(pixel) {
+                if let Some([sum, weights, count]) = sums.get_mut(pixel) {
                     *sum += cosine;
+                    *weights += weight;
                     *count += 1.0;
                 }
             }
         }
     }
-    sums.into_iter().map(|[sum, count]| sum / count).collect()
+    sums.into_iter().map(|[sum, weights, count]| [sum / count, weights / count]).collect()
 }
 
-fn with_arrivals(points: &mut [Option<Point>], cosines: Vec<f64>) {
-    for (point, cosine) in points.iter_mut().zip(cosines) {
+fn with_arrivals(points: &mut [Option<Point>], arrivals: Vec<[f64; 2]>) {
+    for (point, [cosine, weight]) in points.iter_mut().zip(arrivals) {
         if let Some(point) = point {
             point.light = Some([cosine, f64::NAN]);
+            point.weight *= weight;
         }
     }
 }
@@ -162,6 +170,7 @@ impl Visitor for Quantities {
                 light,
                 eye,
                 sensor: sensor(direction),
+                weight: landing.weight,
             })
         });
         if via_light && !via_eye {
@@ -171,7 +180,8 @@ impl Visitor for Quantities {
             let cosines = arrivals(camera, &emitter, |origin, direction| {
                 let landing = scene.landing(origin, direction);
                 let lands = landing.via & (landing.weight > 0.0);
-                lands.then(|| (DVec3::new(landing.x, landing.y, 0.0), landing.cosine))
+                let vertex = DVec3::new(landing.x, landing.y, 0.0);
+                lands.then_some((vertex, landing.cosine, landing.weight))
             });
             with_arrivals(&mut points, cosines);
         }
@@ -191,6 +201,7 @@ impl Visitor for Quantities {
                 light: direct.then(|| towards_light(&scene.light, vertex)),
                 eye: Some(seen_at(camera.position - vertex)),
                 sensor: sensor(direction),
+                weight: 1.0,
             })
         });
         let chain = scene.surface.classes().iter().position(|&c| c == self.class);
@@ -203,7 +214,7 @@ impl Visitor for Quantities {
                 let t = Floor::meet(leg.origin, leg.direction);
                 let d = leg.direction;
                 let lands = (leg.weight > 0.0) & (t < f64::INFINITY);
-                lands.then(|| (leg.origin + d * t, -d.z / f64::sqrt(d.dot(d))))
+                lands.then(|| (leg.origin + d * t, -d.z / f64::sqrt(d.dot(d)), leg.weight))
             });
             with_arrivals(&mut points, cosines);
         }
@@ -224,6 +235,7 @@ impl Visitor for Quantities {
                 light,
                 eye: Some(at(camera.position - vertex)),
                 sensor: sensor(direction),
+                weight: 1.0,
             })
         });
         collected(&points)

@@ -20,6 +20,8 @@ pub struct Images {
     pub means: Vec<f64>,
     /// Contributions that are not zero.
     pub contributions: u64,
+    /// A pixel that is not a number, infinite or negative in some replicate, with its value there.
+    pub impossible: Option<(usize, f64)>,
 }
 
 impl Images {
@@ -51,6 +53,7 @@ pub fn sample(
         variance: vec![0.0; pixels],
         means: Vec::with_capacity(replicates as usize),
         contributions: 0,
+        impossible: None,
     };
     let film = || Film::new(canvas.width, canvas.height, canvas.classes);
     for start in (0..replicates).step_by(AT_A_TIME as usize) {
@@ -72,6 +75,10 @@ pub fn sample(
         for (image, contributions) in drawn {
             images.means.push(compensated_sum(&image) / pixels as f64);
             images.contributions += contributions;
+            if images.impossible.is_none() {
+                let is_bad = |v: &f64| !(v.is_finite() && *v >= 0.0);
+                images.impossible = image.iter().position(is_bad).map(|p| (p, image[p]));
+            }
             // Welford's update, replicate by replicate in their order.
             let n = images.means.len() as f64;
             let sums = images.mean.iter_mut().zip(&mut images.variance);

@@ -12,7 +12,7 @@ pub mod patterns;
 use nephroid_analytic::scene::Entry;
 
 use crate::error::Error;
-use crate::integrators::{Kernel, Plan, Prepared, Treatment};
+use crate::integrators::{Kernel, Plan, Prepared, Technique, Treatment};
 use crate::judge::verdict::State;
 use crate::regions::Regions;
 use crate::truth::TruthImage;
@@ -23,7 +23,7 @@ use crate::verify::suite::Pair;
 use crate::verify::verdicts::Verdict;
 use constants::{candidates, names};
 use images::{Images, sample};
-use patterns::{Pattern, Residual};
+use patterns::{Pattern, Residual, is_one};
 
 /// Phases of the streams, apart from those of pilots and of the test.
 const PHASE: u32 = 1001;
@@ -58,8 +58,8 @@ pub struct Subject<'a> {
 pub enum Known<'a> {
     /// Every pixel.
     Pixels(&'a [f64]),
-    /// The mean over the image [W m⁻² sr⁻¹], at the bandwidths and at half of each.
-    Means([f64; 2]),
+    /// The mean over the image [W m⁻² sr⁻¹], at the bandwidths and at half of each, of what this technique regularizes.
+    Means(Technique, [f64; 2]),
 }
 
 impl<'a> Known<'a> {
@@ -72,7 +72,7 @@ impl<'a> Known<'a> {
     ) -> Option<Self> {
         match treatment {
             Treatment::Exact(_) => Some(Known::Pixels(image?.layers.get(layer)?)),
-            Treatment::Regularized(_) => means.map(Known::Means),
+            Treatment::Regularized(technique) => means.map(|m| Known::Means(technique, m)),
             Treatment::NotSampled => None,
         }
     }
@@ -81,9 +81,8 @@ impl<'a> Known<'a> {
 /// What it looks like, in one sentence.
 pub fn of(subject: &Subject) -> Option<String> {
     let images = subject.drawn(subject.shape, PHASE, REPLICATES);
-    if let Some(p) = images.mean.iter().position(|v| !v.is_finite() || *v < 0.0) {
+    if let Some((p, v)) = images.impossible {
         let (column, row) = (p % subject.width(), p / subject.width());
-        let v = images.mean[p];
         let what = if v.is_nan() {
             "an operation without a result (0/0, or a root of a negative number)"
         } else if v < 0.0 {
@@ -95,7 +94,7 @@ pub fn of(subject: &Subject) -> Option<String> {
     }
     let truth = match subject.truth {
         Known::Pixels(pixels) => pixels.iter().sum::<f64>() / pixels.len() as f64,
-        Known::Means([mean, _]) => mean,
+        Known::Means(_, [mean, _]) => mean,
     };
     if images.contributions == 0 {
         return (truth > 0.0).then(|| "looks like a class of paths that is missing".to_owned());
@@ -111,7 +110,7 @@ pub fn of(subject: &Subject) -> Option<String> {
     }
     match subject.truth {
         Known::Pixels(pixels) => subject.pattern(&images, pixels, [mean, error], truth),
-        Known::Means(means) => Some(subject.trend([mean, error], means)),
+        Known::Means(_, means) => Some(subject.trend([mean, error], means)),
     }
 }
 
@@ -168,7 +167,9 @@ impl Subject<'_> {
             images.variance.iter().map(|v| v / images.replicates()).collect();
         let residual = Residual::new(self.width(), &images.mean, truth, &variance);
         let class = self.entry.kind.classes()[self.layer];
-        let fit = residual.and_then(|r| r.best(&covariates::of(self.entry, class)));
+        let list = candidates(self.entry, None);
+        let is_named = |[factor, error]: [f64; 2]| !names(&list, factor, error).is_empty();
+        let fit = residual.and_then(|r| r.best(&covariates::of(self.entry, class), is_named));
         let Some(fit) = fit else {
             let is_off = (factor[0] - 1.0).abs() > SURE * factor[1];
             return is_off.then(|| {
@@ -177,17 +178,21 @@ impl Subject<'_> {
         };
         let part = 100.0 * fit.explained.min(1.0);
         Some(match fit.pattern {
-            Pattern::Constant => self.constant(factor, ""),
+            Pattern::Constant => {
+                let nearly = if fit.explained < 0.995 { "nearly " } else { "" };
+                let name = shown_names(&names(&list, factor[0], factor[1]));
+                format!("looks like a {nearly}constant factor {}{name}", shown(factor))
+            }
             Pattern::Power(name, power, [a, e]) => {
                 let raised = match power {
                     1 => format!("proportional to {name}"),
                     -1 => format!("proportional to 1/({name})"),
                     p => format!("proportional to ({name})^{p}"),
                 };
-                let beside = if (a - 1.0).abs() > f64::max(4.0 * e, 0.01) {
-                    format!(", times {}{}", shown([a, e]), self.named([a, e]))
-                } else {
+                let beside = if is_one([a, e]) {
                     String::new()
+                } else {
+                    format!(", times {}{}", shown([a, e]), shown_names(&names(&list, a, e)))
                 };
                 let what = match (name, power) {
                     ("the cosine at the receiver", 1) => "a cosine applied twice: a factor ",
@@ -217,37 +222,35 @@ impl Subject<'_> {
             Pattern::Dark => format!(
                 "looks like light through a surface that should stop it: {part:.0} % of the residual is where the truth has no light"
             ),
-            Pattern::Bright(factor) => format!(
-                "looks like clamped contributions, or a mistake near folds: {part:.0} % of the residual is in the brightest tenth, factor \
-                 {factor:.2} there"
-            ),
+            Pattern::Bright(factor) => {
+                let what = if factor < 1.0 {
+                    "clamped contributions, or light lost near folds"
+                } else {
+                    "too much light near folds, or where the density of samples is highest"
+                };
+                format!(
+                    "looks like {what}: {part:.0} % of the residual is in the brightest tenth, factor {factor:.2} there"
+                )
+            }
             Pattern::Edges => format!(
                 "looks like a mistake at edges: {part:.0} % of the residual is where the picture changes abruptly"
             ),
         })
     }
 
-    fn named(&self, [factor, error]: [f64; 2]) -> String {
-        let angle = matches!(self.truth, Known::Means(_));
-        let bandwidth = angle.then(|| self.shape.bandwidths[0]);
-        let mut list = candidates(self.entry, bandwidth);
-        if let [.., last] = self.shape.bandwidths[..]
-            && self.shape.bandwidths.len() > 1
-        {
-            let count = self.shape.bandwidths.len() as f64;
-            let squares = self.shape.bandwidths.iter().map(|r| r * r).sum::<f64>() / count;
+    /// Names of a factor of a regularized class at a multiple of its bandwidths.
+    fn names_at(&self, times: f64, [factor, error]: [f64; 2]) -> Vec<String> {
+        let bandwidths = &self.shape.bandwidths;
+        let is_angle = matches!(self.truth, Known::Means(Technique::Camera, _));
+        let mut list = candidates(self.entry, Some(times * bandwidths[0]));
+        list.retain(|c| is_angle || !c.name.contains('α'));
+        if let [_, .., last] = bandwidths[..] {
+            let squares = bandwidths.iter().map(|r| r * r).sum::<f64>() / bandwidths.len() as f64;
             let name = "mean r² over the last r², the newest normalisation".to_owned();
             let value = squares / (last * last);
             list.push(constants::Named { name, value });
         }
-        match names(&list, factor, error)[..] {
-            [] => String::new(),
-            ref near => format!(" = {}", near.join(" or ")),
-        }
-    }
-
-    fn constant(&self, factor: [f64; 2], also: &str) -> String {
-        format!("looks like a constant factor {}{}{also}", shown(factor), self.named(factor))
+        names(&list, factor, error)
     }
 
     /// From class means at two bandwidths.
@@ -259,35 +262,49 @@ impl Subject<'_> {
         let [mean_half, error_half] = self.drawn(&half, PHASE_HALF, VARIED).image_mean();
         let ratio = [mean / truth, error / truth];
         let at_half = [mean_half / truth_at_half, error_half / truth_at_half];
-        let both = format!("{} and {} at half the bandwidth", shown(ratio), shown(at_half));
+        let both = format!("{}, and {} at half the bandwidth", shown(ratio), shown(at_half));
+        // A name that holds at both bandwidths.
+        let also = self.names_at(0.5, at_half);
+        let mut named = self.names_at(1.0, ratio);
+        named.retain(|n| also.contains(n));
+        if !named.is_empty() {
+            return format!("looks like a factor of the mean{}: {both}", shown_names(&named));
+        }
         let change = at_half[0] / ratio[0];
         let spread = change * libm::hypot(ratio[1] / ratio[0], at_half[1] / at_half[0]);
-        let same = (change - 1.0).abs() < f64::max(4.0 * spread, 0.005);
-        let name = self.named(ratio);
-        let bias = [ratio[0] - 1.0, at_half[0] - 1.0];
-        if same && !name.is_empty() {
-            return self.constant(ratio, ", the same at half the bandwidth");
+        let is = |expected: f64| (change - expected).abs() < f64::max(4.0 * spread, 0.02 * expected);
+        if is(0.5) {
+            return format!("looks like a factor proportional to the bandwidth: {both}");
         }
-        for (power, word) in [(1, "the bandwidth"), (-1, "1/bandwidth"), (2, "its square"), (-2, "1/(its square)")] {
-            let expected = pow2(-power);
-            if (change / expected - 1.0).abs() < f64::max(4.0 * spread / expected, 0.02) {
-                return format!("looks like a factor proportional to {word}: {both}");
-            }
+        if is(2.0) {
+            return format!("looks like a factor proportional to 1/bandwidth: {both}");
         }
-        if !name.is_empty() {
-            return format!("looks like a factor{name}: {both}");
+        if is(0.25) {
+            return format!(
+                "looks like contributions that do not grow as the kernel narrows, clamped or not normalised: a factor \
+                 proportional to the square of the bandwidth, {both}"
+            );
         }
-        let shrinks = (bias[1] / bias[0]).abs();
+        let shrinks = ((at_half[0] - 1.0) / (ratio[0] - 1.0)).abs();
         if shrinks > 0.75 {
-            let what = if same { "a constant factor, or " } else { "" };
-            return format!("looks like {what}a bias that does not shrink with the bandwidth: {both}");
+            return format!(
+                "looks like a bias of the mean that does not shrink with the bandwidth (a constant factor, a floor of the bandwidth, light \
+                 of another class): {both}"
+            );
         }
-        format!("looks like a bias of the kernel that shrinks with the bandwidth: {both}")
+        format!(
+            "looks like another kernel, bandwidth or schedule than the one stated, the bias shrinks with it: {both}"
+        )
     }
 }
 
-fn pow2(exponent: i32) -> f64 {
-    libm::ldexp(1.0, exponent)
+/// ` = π or 2`, or nothing.
+fn shown_names(names: &[String]) -> String {
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!(" = {}", names.join(" or "))
+    }
 }
 
 /// Means of each class at half of the bandwidths; `None` for classes that are not regularized.

@@ -58,12 +58,25 @@ pub enum Pattern {
 
 /// Least part of a residual that a pattern with a number or two must explain.
 const EXPLAINED: f64 = 0.9;
+/// The same for a move: within a pixel the truth is not known, and steep edges keep a part.
+const EXPLAINED_BY_SHIFT: f64 = 0.6;
 /// The same for a pattern that says where and not what.
 const EXPLAINED_BY_PLACE: f64 = 0.8;
 /// What a richer pattern must gain over a constant factor, in units of a pixel's noise.
 const GAIN: f64 = 30.0;
+/// Least relative spread of what a factor may be proportional to.
+const LEAST_SPREAD: f64 = 0.01;
 /// Truth below this part of the mean is none.
 const NONE: f64 = 1e-3;
+
+/// Whether a factor is 1, as well as the fit knows it.
+pub fn is_one([factor, error]: [f64; 2]) -> bool {
+    (factor - 1.0).abs() <= f64::max(4.0 * error, 0.01)
+}
+
+fn is_bare(pattern: &Pattern) -> bool {
+    matches!(pattern, Pattern::Power(_, _, factor) if is_one(*factor))
+}
 
 impl<'a> Residual<'a> {
     /// `variance` is that of each pixel's measured mean. `None` if the images are empty or there is nothing but noise.
@@ -127,23 +140,37 @@ impl<'a> Residual<'a> {
         [product / square, libm::sqrt(per_pixel / square)]
     }
 
-    /// The pattern that fits best, if one does.
-    pub fn best(&self, covariates: &[Covariate]) -> Option<Fit> {
+    /// The pattern that fits best, if one does. A power counts only if the factor beside it has a name, by `is_named`, or
+    /// is 1.
+    pub fn best(
+        &self,
+        covariates: &[Covariate],
+        is_named: impl Fn([f64; 2]) -> bool,
+    ) -> Option<Fit> {
         let [factor, _] = self.factor(self.truth, |_| true);
         let constant = self.of(|i| factor * self.truth[i]);
-        let mut best = (constant, Pattern::Constant);
         let gain = GAIN * self.noise / self.truth.len() as f64;
-        let mut consider = |misfit: f64, pattern: Pattern| {
-            if misfit < best.0 && misfit < constant - gain {
+        // Simplest first: what follows must be better by what noise does not give.
+        let mut best = (constant, Pattern::Constant);
+        let mut consider = |(misfit, pattern): (f64, Pattern)| {
+            if misfit < best.0 - gain {
                 best = (misfit, pattern);
             }
         };
-        for (misfit, pattern) in self.moved().into_iter().chain(self.powers(covariates)) {
-            consider(misfit, pattern);
-        }
+        let (bare, scaled): (Vec<_>, Vec<_>) =
+            self.powers(covariates).into_iter().partition(|(_, p)| is_bare(p));
+        bare.into_iter().for_each(&mut consider);
+        self.moved().into_iter().for_each(&mut consider);
+        let has_name =
+            |p: &Pattern| matches!(p, Pattern::Power(_, _, factor) if is_named(*factor));
+        scaled.into_iter().filter(|(_, p)| has_name(p)).for_each(&mut consider);
         let (misfit, pattern) = best;
         let explained = self.explained(misfit);
-        if explained >= EXPLAINED {
+        let least = match pattern {
+            Pattern::Shift(..) => EXPLAINED_BY_SHIFT,
+            _ => EXPLAINED,
+        };
+        if explained >= least {
             return Some(Fit { pattern, explained });
         }
         self.places()
@@ -153,23 +180,25 @@ impl<'a> Residual<'a> {
     fn powers(&self, covariates: &[Covariate]) -> Vec<(f64, Pattern)> {
         let mut found = Vec::new();
         for Covariate { name, values } in covariates {
-            // Where it is not known there must be little light.
-            let unknown = (0..self.truth.len()).filter(|&i| values[i].is_nan());
-            let lost: f64 = unknown.map(|i| self.truth[i]).sum();
-            if lost > 0.02 * self.truth.iter().sum::<f64>() {
+            let [known, mean, square] = values.iter().zip(self.truth).fold(
+                [0.0; 3],
+                |[n, m, s], (&c, &t)| if c.is_nan() { [n, m, s] } else { [n + t, m + t * c, s + t * c * c] },
+            );
+            let (mean, square) = (mean / known, square / known);
+            // Where it is not known there must be little light; and where it is, it must vary.
+            let varies = square - mean * mean > LEAST_SPREAD * LEAST_SPREAD * mean * mean;
+            if !(varies && known > 0.98 * self.truth.iter().sum::<f64>()) {
                 continue;
             }
-            for power in [1, -1, 2, -2, 3, 4] {
+            for power in [1, -1, 2, -2] {
                 let shape: Vec<f64> = values
                     .iter()
                     .zip(self.truth)
-                    .map(|(&c, &t)| if c.is_nan() { 0.0 } else { t * pow(c, f64::from(power)) })
+                    .map(|(&c, &t)| t * pow(if c.is_nan() { mean } else { c }, f64::from(power)))
                     .collect();
                 let factor = self.factor(&shape, |_| true);
-                let predicted = |i: usize| {
-                    if values[i].is_nan() { self.measured[i] } else { factor[0] * shape[i] }
-                };
-                found.push((self.of(predicted), Pattern::Power(name, power, factor)));
+                let misfit = self.of(|i| factor[0] * shape[i]);
+                found.push((misfit, Pattern::Power(name, power, factor)));
             }
         }
         found
@@ -300,7 +329,7 @@ mod tests {
         let (measured, variance) = noisy(image);
         let truth = picture();
         let residual = Residual::new(WIDTH, &measured, &truth, &variance)?;
-        residual.best(&[cosine()]).map(|f| f.pattern)
+        residual.best(&[cosine()], |_| false).map(|f| f.pattern)
     }
 
     #[test]

@@ -191,11 +191,6 @@ impl Build {
 
     fn planar_mirror(&self, s: &PlanarMirrorScene) -> Scene<Point, Rectangle> {
         let mirror = Rectangle::new(&s.mirror, self.reflectance(s.mirror.reflectance));
-        let mirror = if self.overrides.both_sides {
-            mirror.on_both_sides()
-        } else {
-            mirror
-        };
         self.scene(self.point(&s.light), mirror, &s.floor)
     }
 

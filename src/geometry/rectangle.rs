@@ -18,8 +18,6 @@ pub struct Rectangle {
     half_across: DVec3,
     half_along: DVec3,
     reflectance: f64,
-    /// Reflectance of the back: 0.
-    back: f64,
 }
 
 impl Rectangle {
@@ -36,15 +34,6 @@ impl Rectangle {
             half_across: across * mirror.half_width,
             half_along: along * mirror.half_height,
             reflectance,
-            back: 0.0,
-        }
-    }
-
-    /// The same, its back a mirror as well.
-    pub fn on_both_sides(self) -> Self {
-        Rectangle {
-            back: self.reflectance,
-            ..self
         }
     }
 
@@ -70,12 +59,11 @@ impl Specular for Rectangle {
     fn meet(&self, origin: DVec3, direction: DVec3) -> Meeting {
         let (t, met) = self.crossing(origin, direction);
         let front = direction.dot(self.normal) < 0.0;
-        let reflectance = if front { self.reflectance } else { self.back };
         Meeting {
             t: if met { t } else { f64::INFINITY },
             point: origin + direction * t,
             direction: reflected(direction, self.normal),
-            weight: if met { reflectance } else { 0.0 },
+            weight: if met & front { self.reflectance } else { 0.0 },
         }
     }
 

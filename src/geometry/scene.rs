@@ -37,8 +37,6 @@ pub struct Overrides {
     pub index: Mistaken,
     /// From the index of the water to the a and b of a + b T, which is taken for the transmittance T.
     pub transmittance: Option<fn(f64) -> [f64; 2]>,
-    /// The flat mirror reflects on its back too.
-    pub both_sides: bool,
 }
 
 /// What is taken for a constant.

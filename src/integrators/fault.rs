@@ -64,8 +64,6 @@ pub enum Fault {
     ReflectanceForgotten,
     /// The square of the mirror's reflectance.
     ReflectanceTwice,
-    /// A flat mirror reflects on its back as well.
-    MirrorOnBothSides,
     /// Transmittance 1 at the water's surface.
     FresnelForgotten,
     /// Reflectance and transmittance of the water's surface exchanged.
@@ -153,7 +151,6 @@ impl Fault {
             Fault::BsdfPiTwice => o.albedo = Some(|rho| rho / PI),
             Fault::ReflectanceForgotten => o.reflectance = Some(|_| 1.0),
             Fault::ReflectanceTwice => o.reflectance = Some(|r| r * r),
-            Fault::MirrorOnBothSides => o.both_sides = true,
             Fault::FresnelForgotten => o.transmittance = Some(|_| [1.0, 0.0]),
             Fault::FresnelSwapped => o.transmittance = Some(|_| [1.0, -1.0]),
             Fault::IndexInverted => o.index = Some(|n| 1.0 / n),

@@ -1,7 +1,5 @@
 //! The kill matrix: every exhibit at each of its stands, after the same stands without a fault.
 
-use std::collections::HashMap;
-
 use nephroid_analytic::scene::Entry;
 
 use super::baselines::{self, Accepted};
@@ -68,12 +66,9 @@ impl Row {
         self.trials.iter().map(of).fold(0.0, f64::max)
     }
 
-    /// What most seeds say that it looks like.
+    /// What it looks like with the first seed.
     pub fn looks_like(&self) -> Option<&str> {
-        let mut count: HashMap<&str, usize> = HashMap::new();
-        let said = || self.trials.iter().filter_map(|t| t.looks_like.as_deref());
-        said().for_each(|text| *count.entry(text).or_default() += 1);
-        said().max_by_key(|text| count[text])
+        self.trials.first()?.looks_like.as_deref()
     }
 }
 
@@ -172,7 +167,8 @@ fn row(
     let killable = exhibit.is_some_and(|e| e.unkillable.is_none());
     let most = if killable { MOST_PATHS } else { CONTROL_PATHS };
     let seeds = tour.seed..tour.seed + tour.seeds;
-    let trials = seeds.map(|seed| hall.trial(set_up, fault, seed, most));
+    // The diagnosis costs as much as the verdict: once.
+    let trials = seeds.map(|seed| hall.trial(set_up, fault, seed, most, seed == tour.seed));
     let trials = trials.collect::<Result<Vec<_>, _>>()?;
     let accepted = match (tour.baselines, trials.first()) {
         (true, Some(first)) => Some(baselines::of(set_up, fault, tour.seed, first.paths)?),

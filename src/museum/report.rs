@@ -225,7 +225,7 @@ const HEAD: &str = "# The bug museum\n\nDeliberate faults in the reference integ
     without it. A verdict is that of `nephroid verify` at effort `standard`, ended by the first \"different\".\n\n";
 
 const MATRIX: &str = "## Kill matrix\n\nStand: integrator, scene, bandwidth [rad or m] (of no effect where nothing is regularized). Paths and seconds: the most over the \
-    seeds, pilots and diagnosis in the seconds, truths not.\n\n\
+    seeds, pilots in the seconds, truths and the diagnosis (first seed) not.\n\n\
     | fault | stand | killed | paths | seconds | noticed as (first seed) | looks like |\n\
     | --- | --- | ---: | ---: | ---: | --- | --- |\n";
 

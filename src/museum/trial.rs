@@ -35,7 +35,7 @@ pub struct Trial {
     pub effect: Option<f64>,
     /// Paths that were judged.
     pub paths: u64,
-    /// Wall-clock time, pilots included and truths not.
+    /// Wall-clock time, pilots included, truths and diagnosis not.
     pub seconds: f64,
     /// What it looks like.
     pub looks_like: Option<String>,
@@ -108,6 +108,7 @@ impl Hall {
         fault: Option<Fault>,
         seed: u64,
         most_paths: u64,
+        diagnose: bool,
     ) -> Result<Trial, Error> {
         let started = Instant::now();
         let settings = Settings {
@@ -117,21 +118,51 @@ impl Hall {
         let SetUp { stand, entry, .. } = set_up;
         let integrator = by_name(stand.integrator, &settings)?;
         let seeds = Seeds::new(seed, stand.scene, stand.integrator);
-        let mut trial = match stand.check {
+        let prepared = integrator.prepare(entry);
+        let prepared = prepared.as_ref();
+        let (mut trial, class) = match stand.check {
             Check::Verify => self.verified(set_up, integrator.as_ref(), seeds, most_paths),
-            Check::Repeats => set_up.repeats(integrator.prepare(entry).as_ref(), seeds),
+            Check::Repeats => (set_up.repeats(prepared, seeds), None),
         };
         trial.seconds = started.elapsed().as_secs_f64();
+        if diagnose && trial.noticed && stand.check == Check::Verify {
+            // If the sum of the classes is different, the first of them that looks like something.
+            let classes = class.map_or(0..set_up.plan.len(), |c| c..c + 1);
+            trial.looks_like = classes
+                .filter_map(|class| self.looks_like(set_up, prepared, seeds, class))
+                .next();
+        }
         Ok(trial)
     }
 
+    fn looks_like(
+        &self,
+        set_up: &SetUp,
+        prepared: &dyn Prepared,
+        seeds: Seeds,
+        class: usize,
+    ) -> Option<String> {
+        let expected = set_up.expected[class].as_ref().map(|e| e.image.value);
+        let means = expected.zip(set_up.at_half[class]).map(|(mean, half)| [mean, half]);
+        let image = self.truths.image(set_up.scene);
+        diagnosis::of(&Subject {
+            entry: &set_up.entry,
+            prepared,
+            layer: class,
+            shape: &set_up.shape,
+            seeds,
+            truth: Known::of(set_up.plan[class].treatment, image, class, means)?,
+        })
+    }
+
+    /// The trial, and the position of the class that was different.
     fn verified(
         &self,
         set_up: &SetUp,
         integrator: &dyn Integrator,
         seeds: Seeds,
         most_paths: u64,
-    ) -> Trial {
+    ) -> (Trial, Option<usize>) {
         let demand = Demand {
             margin: Effort::Standard.margin(),
             levels: Levels::shared(LEVEL, EQUIVALENCE_LEVEL, self.checks),
@@ -147,22 +178,8 @@ impl Hall {
             &set_up.expected,
             demand,
         );
+        // A class rather than the sum of all.
         let different = evidence.judged.iter().find(|j| j.finding.state == State::Different);
-        let class = different.and_then(|j| j.class);
-        let looks_like = class.and_then(|class| {
-            let expected = set_up.expected[class].as_ref().map(|e| e.image.value);
-            let means = expected.zip(set_up.at_half[class]).map(|(mean, half)| [mean, half]);
-            let image = self.truths.image(set_up.scene);
-            let treatment = set_up.plan[class].treatment;
-            diagnosis::of(&Subject {
-                entry: &set_up.entry,
-                prepared: integrator.prepare(&set_up.entry).as_ref(),
-                layer: class,
-                shape: &set_up.shape,
-                seeds,
-                truth: Known::of(treatment, image, class, means)?,
-            })
-        });
         let by = different.map(|j| {
             let class = j.class.map_or("all".to_owned(), |c| set_up.plan[c].class.to_string());
             let finding = &j.finding;
@@ -172,14 +189,15 @@ impl Hall {
                 (None, None) => format!("{class}: {}", finding.reason),
             }
         });
-        Trial {
+        let trial = Trial {
             noticed: different.is_some(),
             by: by.unwrap_or_default(),
             effect: different.and_then(|j| j.finding.effect),
             paths: paths(&evidence),
             seconds: 0.0,
-            looks_like,
-        }
+            looks_like: None,
+        };
+        (trial, different.and_then(|j| j.class))
     }
 }
 

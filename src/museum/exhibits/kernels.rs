@@ -31,7 +31,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "The kernel's angle is compared as a full angle and normalised as a half angle.",
         "https://github.com/drsnuggles8/OloEngineBase/issues/1347 (convention mix-ups of α)",
         "kernel: support",
-        &[on("pt-reg", "museum-wall")],
+        &[at("pt-reg", "museum-wall", WIDE)],
     ),
     Exhibit::new(
         "delta-cosine-kept",
@@ -39,7 +39,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "The 1/cos of the delta BSDF is kept though a kernel in solid angle needs none.",
         "https://github.com/shocker-0x15/VLR (regularised specular lobes divided by a cosine)",
         "regularized connection",
-        &[on("pt-reg", "museum-wall")],
+        &[at("pt-reg", "museum-wall", WIDE)],
     ),
     Exhibit::new(
         "cosine-at-specular-vertex",
@@ -47,7 +47,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "The rendering equation's cosine is applied at the mollified vertex.",
         "https://github.com/shocker-0x15/VLR (the cosine of one direction where that of the other is needed)",
         "regularized connection",
-        &[on("pt-reg", "museum-wall")],
+        &[at("pt-reg", "museum-wall", WIDE)],
     ),
     Exhibit::new(
         "uniform-for-cosine",
@@ -55,7 +55,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "Directions are drawn uniformly and weighted as if by cos θ/π.",
         "https://github.com/gkjohnson/three-gpu-pathtracer/issues/847 (densities of sample and evaluation differ)",
         "regularized connection: direction",
-        &[on("pt-reg", "museum-wall")],
+        &[at("pt-reg", "museum-wall", WIDE)],
     ),
     Exhibit::new(
         "samples-clamped",
@@ -112,7 +112,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "The cells of the grid are smaller than the radius.",
         "https://github.com/SmallVCM/SmallVCM (src/hashgrid.hxx: cell size of twice the radius)",
         "photon map: cells",
-        &[on("pm", "museum-wall")],
+        &[at("pm", "museum-wall", WIDE)],
     ),
     Exhibit::new(
         "radius-not-shrinking",

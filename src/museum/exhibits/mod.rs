@@ -129,16 +129,8 @@ pub fn all() -> impl Iterator<Item = &'static Exhibit> {
 }
 
 /// Scenes of the museum alone: name and TOML.
-pub const SCENES: [(&str, &str); 2] = [
-    (
-        "museum-wall",
-        include_str!("../scenes/museum-wall.toml"),
-    ),
-    (
-        "museum-back",
-        include_str!("../scenes/museum-back.toml"),
-    ),
-];
+pub const SCENES: [(&str, &str); 1] =
+    [("museum-wall", include_str!("../scenes/museum-wall.toml"))];
 
 /// The scene of a stand.
 ///

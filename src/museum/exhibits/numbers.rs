@@ -1,6 +1,6 @@
 //! Faults of random numbers, of arithmetic and of what is stored.
 
-use super::{Exhibit, on, repeats};
+use super::{Exhibit, at, on, repeats};
 use crate::integrators::Fault;
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
@@ -34,7 +34,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "One random number is used for two dimensions.",
         "https://github.com/scanlime/zenphoton/pull/8 (correlated random numbers at two places)",
         "random numbers of emission and of the scattered direction",
-        &[on("lt", "floor"), on("pt-reg", "museum-wall")],
+        &[on("lt", "floor"), at("pt-reg", "museum-wall", 0.6)],
     ),
     Exhibit::new(
         "seed-truncated",
