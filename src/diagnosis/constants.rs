@@ -91,13 +91,26 @@ fn own_constants(entry: &Entry) -> Vec<(&'static str, f64)> {
     found
 }
 
+/// Factors that come from what is met on the way, by its mean.
+pub fn of_weight(mean: f64) -> Vec<Named> {
+    let named = |name: &str, value: f64| Named {
+        name: name.to_owned(),
+        value,
+    };
+    vec![
+        named("T, the mean reflectance or transmittance on the way", mean),
+        named("1/T, of the mean reflectance or transmittance on the way", 1.0 / mean),
+        named("(1 - T)/T, of the mean reflectance or transmittance on the way", (1.0 - mean) / mean),
+    ]
+}
+
 /// The names of a factor that is known to ± `error`, the nearest first; at most three.
 pub fn names(candidates: &[Named], factor: f64, error: f64) -> Vec<String> {
-    // Above four standard errors, or a relative 0.2 % that a truth's own bound may take.
+    // Within three standard errors, or a relative 0.2 % that a truth's own bound may take.
     let mut near: Vec<_> = candidates
         .iter()
         .map(|c| ((c.value - factor).abs(), c))
-        .filter(|(off, c)| *off <= f64::max(4.0 * error, 0.002 * c.value))
+        .filter(|(off, c)| *off <= f64::max(3.0 * error, 0.002 * c.value))
         .collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     near.into_iter().take(3).map(|(_, c)| c.name.clone()).collect()

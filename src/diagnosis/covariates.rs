@@ -21,6 +21,9 @@ use crate::stream::{BLOCK, Dimension, Stream, zeros};
 /// Photons that find the cosines of light that has met specular surfaces.
 const PHOTONS: u64 = 1 << 19;
 
+/// The name of the product of reflectances and transmittances between light and eye.
+pub const WEIGHT: &str = "the reflectance or transmittance on the way";
+
 /// One quantity over the image; NaN where it is not known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariate {
@@ -28,6 +31,14 @@ pub struct Covariate {
     pub name: &'static str,
     /// By pixel.
     pub values: Vec<f64>,
+}
+
+impl Covariate {
+    /// Mean over the pixels where it is known, each with its part of the light.
+    pub fn mean(&self, light: &[f64]) -> f64 {
+        let known = || self.values.iter().zip(light).filter(|(c, _)| !c.is_nan());
+        known().map(|(c, l)| c * l).sum::<f64>() / known().map(|(_, l)| l).sum::<f64>()
+    }
 }
 
 /// The quantities that are known for a class.
@@ -84,7 +95,7 @@ fn collected(points: &[Option<Point>]) -> Vec<Covariate> {
         ),
         ("the cosine at the sensor", values(&|p| Some(p.sensor))),
         (
-            "the reflectance or transmittance on the way",
+            WEIGHT,
             values(&|p| Some(p.weight)),
         ),
     ];

@@ -20,6 +20,8 @@ pub struct Images {
     pub means: Vec<f64>,
     /// Contributions that are not zero.
     pub contributions: u64,
+    /// The same of all layers.
+    pub arrived: u64,
     /// A pixel that is not a number, infinite or negative in some replicate, with its value there.
     pub impossible: Option<(usize, f64)>,
 }
@@ -53,6 +55,7 @@ pub fn sample(
         variance: vec![0.0; pixels],
         means: Vec::with_capacity(replicates as usize),
         contributions: 0,
+        arrived: 0,
         impossible: None,
     };
     let film = || Film::new(canvas.width, canvas.height, canvas.classes);
@@ -69,10 +72,12 @@ pub fn sample(
                 let scale = 1.0 / film.paths as f64;
                 let value = |p| layers.iter().map(|&l| film.layers[l][p]).sum::<f64>() * scale;
                 let contributions: u64 = layers.iter().map(|&l| film.nonzero[l]).sum();
-                ((0..pixels).map(value).collect::<Vec<f64>>(), contributions)
+                let arrived: u64 = film.nonzero.iter().sum();
+                ((0..pixels).map(value).collect::<Vec<f64>>(), contributions, arrived)
             })
             .collect();
-        for (image, contributions) in drawn {
+        for (image, contributions, arrived) in drawn {
+            images.arrived += arrived;
             images.means.push(compensated_sum(&image) / pixels as f64);
             images.contributions += contributions;
             if images.impossible.is_none() {

@@ -30,8 +30,8 @@ const PHASE: u32 = 1001;
 const PHASE_MORE: u32 = 1002;
 const PHASE_HALF: u32 = 1003;
 /// Replicates of the image, and of each variation of it.
-const REPLICATES: u32 = 64;
-const VARIED: u32 = 24;
+const REPLICATES: u32 = 128;
+const VARIED: u32 = 48;
 /// By how much more paths a replicate has when it is asked whether their number matters.
 const MORE: u64 = 4;
 /// Standard errors beyond which two means are not the same.
@@ -110,7 +110,7 @@ pub fn of(subject: &Subject) -> Option<String> {
     }
     match subject.truth {
         Known::Pixels(pixels) => subject.pattern(&images, pixels, [mean, error], truth),
-        Known::Means(_, means) => Some(subject.trend([mean, error], means)),
+        Known::Means(_, means) => subject.trend([mean, error], means),
     }
 }
 
@@ -142,7 +142,7 @@ impl Subject<'_> {
             paths_per_iteration: MORE * self.shape.paths_per_iteration,
             ..self.shape.clone()
         };
-        let [other, other_error] = self.drawn(&shape, PHASE_MORE, VARIED / 3).image_mean();
+        let [other, other_error] = self.drawn(&shape, PHASE_MORE, VARIED / 6).image_mean();
         let ratio = other / mean;
         let spread = libm::hypot(error, other_error) / mean;
         let differs = (ratio - 1.0).abs() > f64::max(2.0 * SURE * spread, 0.02);
@@ -167,13 +167,28 @@ impl Subject<'_> {
             images.variance.iter().map(|v| v / images.replicates()).collect();
         let residual = Residual::new(self.width(), &images.mean, truth, &variance);
         let class = self.entry.kind.classes()[self.layer];
-        let list = candidates(self.entry, None);
+        let covariates = covariates::of(self.entry, class);
+        let mut list = candidates(self.entry, None);
+        let paths = self.shape.paths() as f64 * images.replicates();
+        list.push(constants::Named {
+            name: "paths per path that arrives".to_owned(),
+            value: paths / images.arrived as f64,
+        });
+        let weight = covariates.iter().find(|c| c.name == covariates::WEIGHT);
+        if let Some(mean) = weight.map(|w| w.mean(truth)).filter(|m| *m > 0.0 && *m < 1.0 - 1e-6) {
+            list.extend(constants::of_weight(mean));
+        }
         let is_named = |[factor, error]: [f64; 2]| !names(&list, factor, error).is_empty();
-        let fit = residual.and_then(|r| r.best(&covariates::of(self.entry, class), is_named));
+        let fit = residual.and_then(|r| r.best(&covariates, is_named));
         let Some(fit) = fit else {
             let is_off = (factor[0] - 1.0).abs() > SURE * factor[1];
-            return is_off.then(|| {
-                format!("no pattern on file fits; the mean is {} times what it should be", shown(factor))
+            let named = shown_names(&names(&list, factor[0], factor[1]));
+            return is_off.then(|| match named.as_str() {
+                "" => format!(
+                    "looks like nothing on file: the mean is {} times what it should be, and no pattern fits",
+                    shown(factor)
+                ),
+                _ => format!("looks like a factor of the mean {}{named}", shown(factor)),
             });
         };
         let part = 100.0 * fit.explained.min(1.0);
@@ -254,13 +269,16 @@ impl Subject<'_> {
     }
 
     /// From class means at two bandwidths.
-    fn trend(&self, [mean, error]: [f64; 2], [truth, truth_at_half]: [f64; 2]) -> String {
+    fn trend(&self, [mean, error]: [f64; 2], [truth, truth_at_half]: [f64; 2]) -> Option<String> {
         let half = Shape {
             bandwidths: self.shape.bandwidths.iter().map(|b| 0.5 * b).collect(),
             paths_per_iteration: 2 * self.shape.paths_per_iteration,
         };
         let [mean_half, error_half] = self.drawn(&half, PHASE_HALF, VARIED).image_mean();
         let ratio = [mean / truth, error / truth];
+        if (ratio[0] - 1.0).abs() < SURE * ratio[1] {
+            return None;
+        }
         let at_half = [mean_half / truth_at_half, error_half / truth_at_half];
         let both = format!("{}, and {} at half the bandwidth", shown(ratio), shown(at_half));
         // A name that holds at both bandwidths.
@@ -268,33 +286,34 @@ impl Subject<'_> {
         let mut named = self.names_at(1.0, ratio);
         named.retain(|n| also.contains(n));
         if !named.is_empty() {
-            return format!("looks like a factor of the mean{}: {both}", shown_names(&named));
+            let named = shown_names(&named);
+            return Some(format!("looks like a factor of the mean{named}: {both}"));
         }
         let change = at_half[0] / ratio[0];
         let spread = change * libm::hypot(ratio[1] / ratio[0], at_half[1] / at_half[0]);
         let is = |expected: f64| (change - expected).abs() < f64::max(4.0 * spread, 0.02 * expected);
         if is(0.5) {
-            return format!("looks like a factor proportional to the bandwidth: {both}");
+            return Some(format!("looks like a factor proportional to the bandwidth: {both}"));
         }
         if is(2.0) {
-            return format!("looks like a factor proportional to 1/bandwidth: {both}");
+            return Some(format!("looks like a factor proportional to 1/bandwidth: {both}"));
         }
         if is(0.25) {
-            return format!(
+            return Some(format!(
                 "looks like contributions that do not grow as the kernel narrows, clamped or not normalised: a factor \
                  proportional to the square of the bandwidth, {both}"
-            );
+            ));
         }
         let shrinks = ((at_half[0] - 1.0) / (ratio[0] - 1.0)).abs();
         if shrinks > 0.75 {
-            return format!(
+            return Some(format!(
                 "looks like a bias of the mean that does not shrink with the bandwidth (a constant factor, a floor of the bandwidth, light \
                  of another class): {both}"
-            );
+            ));
         }
-        format!(
+        Some(format!(
             "looks like another kernel, bandwidth or schedule than the one stated, the bias shrinks with it: {both}"
-        )
+        ))
     }
 }
 

@@ -59,11 +59,13 @@ pub enum Pattern {
 /// Least part of a residual that a pattern with a number or two must explain.
 const EXPLAINED: f64 = 0.9;
 /// The same for a move: within a pixel the truth is not known, and steep edges keep a part.
-const EXPLAINED_BY_SHIFT: f64 = 0.6;
+const EXPLAINED_BY_SHIFT: f64 = 0.5;
 /// The same for a pattern that says where and not what.
 const EXPLAINED_BY_PLACE: f64 = 0.8;
 /// What a richer pattern must gain over a constant factor, in units of a pixel's noise.
 const GAIN: f64 = 30.0;
+/// Standard deviations of χ² above noise from which there is something to explain.
+const ESTABLISHED: f64 = 8.0;
 /// Least relative spread of what a factor may be proportional to.
 const LEAST_SPREAD: f64 = 0.01;
 /// Truth below this part of the mean is none.
@@ -106,7 +108,9 @@ impl<'a> Residual<'a> {
             misfit: 0.0,
         };
         residual.misfit = residual.of(|i| truth[i]);
-        let spread = GAIN * noise / truth.len() as f64;
+        // χ² of n pixels scatters by √(2n).
+        let pixels = truth.len() as f64;
+        let spread = ESTABLISHED * libm::sqrt(2.0 * pixels) * noise / pixels;
         (residual.misfit - noise > spread).then_some(residual)
     }
 
@@ -276,9 +280,19 @@ impl<'a> Residual<'a> {
             if there == 0 || (pattern != Pattern::Dark && 3 * there > self.truth.len()) {
                 continue;
             }
-            let elsewhere = |i: usize| if is_there(i) { self.measured[i] } else { self.truth[i] };
-            // The noise of the place is fitted away too.
-            let explained = self.explained(self.of(elsewhere) + self.noise_of(is_there));
+            // Fitted away, noise and all; or, for the brightest pixels, with their one factor.
+            let (misfit, fitted) = match pattern {
+                Pattern::Bright(factor) => {
+                    let scaled = |i: usize| if is_there(i) { factor } else { 1.0 };
+                    (self.of(|i| scaled(i) * self.truth[i]), factor)
+                }
+                Pattern::Frame(factor) => (self.elsewhere(is_there), factor),
+                _ => (self.elsewhere(is_there), 0.0),
+            };
+            if (fitted - 1.0).abs() < 0.05 {
+                continue;
+            }
+            let explained = self.explained(misfit);
             if explained >= EXPLAINED_BY_PLACE {
                 return Some(Fit { pattern, explained });
             }
@@ -286,9 +300,11 @@ impl<'a> Residual<'a> {
         None
     }
 
-    fn noise_of(&self, is_there: &dyn Fn(usize) -> bool) -> f64 {
+    /// χ² if a place is as it was measured and the rest as it should be, with the noise of the place.
+    fn elsewhere(&self, is_there: &dyn Fn(usize) -> bool) -> f64 {
         let there = (0..self.truth.len()).filter(|&i| is_there(i)).count();
-        self.noise * there as f64 / self.truth.len() as f64
+        let noise = self.noise * there as f64 / self.truth.len() as f64;
+        noise + self.of(|i| if is_there(i) { self.measured[i] } else { self.truth[i] })
     }
 }
 

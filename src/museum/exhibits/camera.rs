@@ -67,7 +67,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "Pixel centres for pixel corners: the image is half a pixel off.",
         "https://github.com/LuxCoreRender/LuxCore/issues/413 (light image and camera image filtered differently)",
         "film: position",
-        &[on("lt", "cup")],
+        &[on("lt", "cup"), on("pt", "mirror-wall")],
     ),
     Exhibit::new(
         "image-flipped",
