@@ -6,11 +6,11 @@
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
+use nephroid::entry;
+use nephroid::film::Film;
 use nephroid::integrators::{
     Fault, Integrator, NAMES, Plan, Prepared, Schedule, Settings, all as integrators, by_name,
 };
-use nephroid::entry;
-use nephroid::film::Film;
 use nephroid::museum::baselines::{blender, mitsuba, pbrt};
 use nephroid::museum::exhibits::scene;
 use nephroid::museum::matrix::checks_of_suite;
@@ -25,21 +25,36 @@ fn every_exhibit_has_a_source_a_description_and_a_place() {
     let mut killable = 0;
     for e in all() {
         assert!(ids.insert(e.id), "{} is there twice", e.id);
-        assert!(e.id.bytes().all(|b| b.is_ascii_lowercase() || b == b'-'), "{}", e.id);
+        assert!(
+            e.id.bytes().all(|b| b.is_ascii_lowercase() || b == b'-'),
+            "{}",
+            e.id
+        );
         assert!(e.source.starts_with("https://"), "{}", e.id);
-        assert!(e.description.ends_with('.') && e.description.len() > 20, "{}", e.id);
+        assert!(
+            e.description.ends_with('.') && e.description.len() > 20,
+            "{}",
+            e.id
+        );
         assert!(!e.injection.is_empty(), "{}", e.id);
         assert!(!e.stands.is_empty(), "{} is nowhere", e.id);
-        assert!(e.unkillable.is_none_or(|reason| reason.len() > 40), "{}", e.id);
+        assert!(
+            e.unkillable.is_none_or(|reason| reason.len() > 40),
+            "{}",
+            e.id
+        );
         killable += usize::from(e.unkillable.is_none());
         for stand in e.stands {
             assert!(NAMES.contains(&stand.integrator), "{}", e.id);
             let entry = scene(stand.scene).unwrap();
             let integrator = by_name(stand.integrator, &Settings::default()).unwrap();
             assert!(integrator.supports(&entry).is_ok(), "{}", e.id);
-            assert!(integrator.plan(&entry).iter().any(|c| {
-                c.treatment != nephroid::integrators::Treatment::NotSampled
-            }));
+            assert!(
+                integrator
+                    .plan(&entry)
+                    .iter()
+                    .any(|c| { c.treatment != nephroid::integrators::Treatment::NotSampled })
+            );
         }
     }
     assert!(killable >= 45, "{killable}");
@@ -90,7 +105,8 @@ static CHECKS: LazyLock<u64> = LazyLock::new(|| checks_of_suite().unwrap());
 fn trial(hall: &mut Hall, id: &str) -> Trial {
     let e = exhibit(id);
     let set_up = hall.set_up(&e.stands[0]).unwrap();
-    hall.trial(&set_up, Some(e.fault), 3, MOST_PATHS, true).unwrap()
+    hall.trial(&set_up, Some(e.fault), 3, MOST_PATHS, true)
+        .unwrap()
 }
 
 /// The cheap ones of the matrix, one seed, and what they look like: a part of the sentence that names the planted cause.
@@ -101,7 +117,10 @@ fn faults_are_noticed_and_named() {
         ("intensity-forgotten", "1/I"),
         ("hemisphere-for-sphere", "= 2"),
         ("no-falloff", "(the distance to the light)^2"),
-        ("inverse-distance", "proportional to the distance to the light"),
+        (
+            "inverse-distance",
+            "proportional to the distance to the light",
+        ),
         ("albedo-twice", "ρ"),
         ("bsdf-without-pi", "π"),
         ("pi-twice", "1/π"),
@@ -190,7 +209,9 @@ fn a_users_own_method_is_diagnosed() {
             argument: "floor".to_owned(),
             entry: entry::load("floor").unwrap(),
         }],
-        integrators: vec![Box::new(Darker(by_name("pt", &Settings::default()).unwrap()))],
+        integrators: vec![Box::new(Darker(
+            by_name("pt", &Settings::default()).unwrap(),
+        ))],
         left_out: Vec::new(),
         effort: Effort::Quick,
         coverage: Coverage::Everything,
@@ -205,7 +226,10 @@ fn a_users_own_method_is_diagnosed() {
     };
     let outcome = run(&request, &mut Truths::for_margin(0.02), &|_, _, _, _| {}).unwrap();
     let text = outcome.verdicts[0].looks_like.clone().unwrap_or_default();
-    assert!(text.starts_with("looks like a constant factor 0.7") && text.contains("= ρ"), "{text}");
+    assert!(
+        text.starts_with("looks like a constant factor 0.7") && text.contains("= ρ"),
+        "{text}"
+    );
     let shown = nephroid::report::text::outcome(&outcome);
     assert!(shown.contains(&text), "{shown}");
     let json = nephroid::report::json::outcome(&outcome);
@@ -226,7 +250,9 @@ fn mitsubas_rule_tolerates_a_quarter_of_a_per_cent() {
     let reference = vec![1.0; n];
     let variance = vec![1.0; n];
     let with = |count: usize, off: f64| -> Vec<f64> {
-        (0..n).map(|i| if i < count { 1.0 + off } else { 1.0 }).collect()
+        (0..n)
+            .map(|i| if i < count { 1.0 + off } else { 1.0 })
+            .collect()
     };
     let passes = |image: &[f64]| mitsuba(image, &reference, &variance, 100.0);
     assert!(passes(&with(n, 0.488)));
@@ -249,7 +275,9 @@ fn blenders_rule_tolerates_four_steps_and_a_per_cent_of_the_pixels() {
     let n = 1000;
     let reference = vec![2.5; n];
     let with = |count: usize, factor: f64| -> Vec<f64> {
-        (0..n).map(|i| 2.5 * if i < count { factor } else { 1.0 }).collect()
+        (0..n)
+            .map(|i| 2.5 * if i < count { factor } else { 1.0 })
+            .collect()
     };
     assert!(blender(&with(n, 1.07), &reference));
     assert!(blender(&with(n, 0.93), &reference));
@@ -263,7 +291,9 @@ fn blenders_rule_tolerates_four_steps_and_a_per_cent_of_the_pixels() {
 #[test]
 fn every_method_has_faults() {
     for integrator in integrators() {
-        let tried = all().flat_map(|e| e.stands).any(|s| s.integrator == integrator.name());
+        let tried = all()
+            .flat_map(|e| e.stands)
+            .any(|s| s.integrator == integrator.name());
         assert!(tried, "{}", integrator.name());
     }
 }

@@ -48,7 +48,11 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         found: found.to_owned(),
         allowed,
     };
-    if let Some(id) = args.ids.iter().find(|id| all().all(|e| e.id != id.as_str())) {
+    if let Some(id) = args
+        .ids
+        .iter()
+        .find(|id| all().all(|e| e.id != id.as_str()))
+    {
         let ids: Vec<_> = all().map(|e| e.id).collect();
         return Err(unknown("fault", id, ids.join(", ")));
     }

@@ -58,7 +58,10 @@ pub fn candidates(entry: &Entry, bandwidth: Option<f64>) -> Vec<Named> {
         add("2π(1 - cos α)/(πα²)", cap / (a * a));
         add("2π(1 - cos α)/(π tan² α)", cap / (tan(a) * tan(a)));
         let quarter = sin(0.25 * a) / sin(0.5 * a);
-        add("(1 - cos(α/2))/(1 - cos α), half angle and full angle", quarter * quarter);
+        add(
+            "(1 - cos(α/2))/(1 - cos α), half angle and full angle",
+            quarter * quarter,
+        );
     }
     list
 }
@@ -99,8 +102,14 @@ pub fn of_weight(mean: f64) -> Vec<Named> {
     };
     vec![
         named("T, the mean reflectance or transmittance on the way", mean),
-        named("1/T, of the mean reflectance or transmittance on the way", 1.0 / mean),
-        named("(1 - T)/T, of the mean reflectance or transmittance on the way", (1.0 - mean) / mean),
+        named(
+            "1/T, of the mean reflectance or transmittance on the way",
+            1.0 / mean,
+        ),
+        named(
+            "(1 - T)/T, of the mean reflectance or transmittance on the way",
+            (1.0 - mean) / mean,
+        ),
     ]
 }
 
@@ -113,5 +122,8 @@ pub fn names(candidates: &[Named], factor: f64, error: f64) -> Vec<String> {
         .filter(|(off, c)| *off <= f64::max(3.0 * error, 0.002 * c.value))
         .collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    near.into_iter().take(3).map(|(_, c)| c.name.clone()).collect()
+    near.into_iter()
+        .take(3)
+        .map(|(_, c)| c.name.clone())
+        .collect()
 }

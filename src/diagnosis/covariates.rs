@@ -33,7 +33,42 @@ pub struct Covariate {
     pub values: Vec<f64>,
 }
 
+/// How far a quantity is carried over the border of where it is known [pixels].
+const CARRIED: u32 = 2;
+
 impl Covariate {
+    /// Whether it differs from pixel to pixel at all.
+    pub fn varies(&self) -> bool {
+        let known = || self.values.iter().copied().filter(|c| !c.is_nan());
+        let [low, high] = [
+            known().fold(f64::INFINITY, f64::min),
+            known().fold(0.0, f64::max),
+        ];
+        high > low * (1.0 + 1e-6)
+    }
+
+    /// Pixels at the border of what is seen have light, though the ray through their centre may miss it: they get the mean of
+    /// their neighbours.
+    fn carried(mut self, width: usize) -> Self {
+        for _ in 0..CARRIED {
+            let known = self.values.clone();
+            for (i, value) in self.values.iter_mut().enumerate() {
+                if !value.is_nan() {
+                    continue;
+                }
+                let (x, y) = (i % width, i / width);
+                let near = |c: usize, end: usize| c.saturating_sub(1)..(c + 2).min(end);
+                let around = near(y, known.len() / width)
+                    .flat_map(|y| near(x, width).map(move |x| y * width + x))
+                    .map(|j| known[j])
+                    .filter(|c| !c.is_nan());
+                let (sum, count) = around.fold((0.0, 0.0), |(s, n), c| (s + c, n + 1.0));
+                *value = sum / count;
+            }
+        }
+        self
+    }
+
     /// Mean over the pixels where it is known, each with its part of the light.
     pub fn mean(&self, light: &[f64]) -> f64 {
         let known = || self.values.iter().zip(light).filter(|(c, _)| !c.is_nan());
@@ -43,7 +78,9 @@ impl Covariate {
 
 /// The quantities that are known for a class.
 pub fn of(entry: &Entry, class: PathClass) -> Vec<Covariate> {
-    visit(entry, Overrides::default(), Quantities { class })
+    let width = entry.camera.width as usize;
+    let found = visit(entry, Overrides::default(), Quantities { class });
+    found.into_iter().map(|c| c.carried(width)).collect()
 }
 
 struct Quantities {
@@ -65,9 +102,7 @@ fn grid(camera: &Pinhole, of: impl Fn(DVec3) -> Option<Point>) -> Vec<Option<Poi
     let (columns, rows) = (columns as u32, rows as u32);
     (0..rows)
         .flat_map(|row| (0..columns).map(move |column| (column, row)))
-        .map(|(column, row)| {
-            of(camera.direction(f64::from(column) + 0.5, f64::from(row) + 0.5))
-        })
+        .map(|(column, row)| of(camera.direction(f64::from(column) + 0.5, f64::from(row) + 0.5)))
         .collect()
 }
 
@@ -89,15 +124,9 @@ fn collected(points: &[Option<Point>]) -> Vec<Covariate> {
             "the cosine at the receiver towards the eye",
             values(&|p| p.eye.map(|e| e[0])),
         ),
-        (
-            "the distance to the eye",
-            values(&|p| p.eye.map(|e| e[1])),
-        ),
+        ("the distance to the eye", values(&|p| p.eye.map(|e| e[1]))),
         ("the cosine at the sensor", values(&|p| Some(p.sensor))),
-        (
-            WEIGHT,
-            values(&|p| Some(p.weight)),
-        ),
+        (WEIGHT, values(&|p| Some(p.weight))),
     ];
     all.into_iter()
         .map(|(name, values)| Covariate { name, values })
@@ -119,7 +148,14 @@ fn towards_light<L: Light>(light: &L, vertex: DVec3) -> [f64; 2] {
     let (towards, end) = light.towards(vertex);
     let [cosine, distance] = seen_at(towards);
     // A directional light has no distance.
-    [cosine, if end < f64::INFINITY { distance } else { f64::NAN }]
+    [
+        cosine,
+        if end < f64::INFINITY {
+            distance
+        } else {
+            f64::NAN
+        },
+    ]
 }
 
 /// Mean cosine of arrival and mean weight by pixel, from photons that `land` where the pinhole can see them.
@@ -150,7 +186,9 @@ fn arrivals(
             }
         }
     }
-    sums.into_iter().map(|[sum, weights, count]| [sum / count, weights / count]).collect()
+    sums.into_iter()
+        .map(|[sum, weights, count]| [sum / count, weights / count])
+        .collect()
 }
 
 fn with_arrivals(points: &mut [Option<Point>], arrivals: Vec<[f64; 2]>) {
@@ -215,7 +253,11 @@ impl Visitor for Quantities {
                 weight: 1.0,
             })
         });
-        let chain = scene.surface.classes().iter().position(|&c| c == self.class);
+        let chain = scene
+            .surface
+            .classes()
+            .iter()
+            .position(|&c| c == self.class);
         if let (false, Some(chain)) = (direct, chain) {
             let targets = scene.surface.targets(chain, &scene.floor.hull());
             let highest = targets.iter().map(|p| p.z).fold(0.0, f64::max);

@@ -73,7 +73,11 @@ pub fn sample(
                 let value = |p| layers.iter().map(|&l| film.layers[l][p]).sum::<f64>() * scale;
                 let contributions: u64 = layers.iter().map(|&l| film.nonzero[l]).sum();
                 let arrived: u64 = film.nonzero.iter().sum();
-                ((0..pixels).map(value).collect::<Vec<f64>>(), contributions, arrived)
+                (
+                    (0..pixels).map(value).collect::<Vec<f64>>(),
+                    contributions,
+                    arrived,
+                )
             })
             .collect();
         for (image, contributions, arrived) in drawn {

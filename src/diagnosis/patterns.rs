@@ -161,13 +161,17 @@ impl<'a> Residual<'a> {
                 best = (misfit, pattern);
             }
         };
-        let (bare, scaled): (Vec<_>, Vec<_>) =
-            self.powers(covariates).into_iter().partition(|(_, p)| is_bare(p));
+        let (bare, scaled): (Vec<_>, Vec<_>) = self
+            .powers(covariates)
+            .into_iter()
+            .partition(|(_, p)| is_bare(p));
         bare.into_iter().for_each(&mut consider);
         self.moved().into_iter().for_each(&mut consider);
-        let has_name =
-            |p: &Pattern| matches!(p, Pattern::Power(_, _, factor) if is_named(*factor));
-        scaled.into_iter().filter(|(_, p)| has_name(p)).for_each(&mut consider);
+        let has_name = |p: &Pattern| matches!(p, Pattern::Power(_, _, factor) if is_named(*factor));
+        scaled
+            .into_iter()
+            .filter(|(_, p)| has_name(p))
+            .for_each(&mut consider);
         let (misfit, pattern) = best;
         let explained = self.explained(misfit);
         let least = match pattern {
@@ -184,10 +188,17 @@ impl<'a> Residual<'a> {
     fn powers(&self, covariates: &[Covariate]) -> Vec<(f64, Pattern)> {
         let mut found = Vec::new();
         for Covariate { name, values } in covariates {
-            let [known, mean, square] = values.iter().zip(self.truth).fold(
-                [0.0; 3],
-                |[n, m, s], (&c, &t)| if c.is_nan() { [n, m, s] } else { [n + t, m + t * c, s + t * c * c] },
-            );
+            let [known, mean, square] =
+                values
+                    .iter()
+                    .zip(self.truth)
+                    .fold([0.0; 3], |[n, m, s], (&c, &t)| {
+                        if c.is_nan() {
+                            [n, m, s]
+                        } else {
+                            [n + t, m + t * c, s + t * c * c]
+                        }
+                    });
             let (mean, square) = (mean / known, square / known);
             // Where it is not known there must be little light; and where it is, it must vary.
             let varies = square - mean * mean > LEAST_SPREAD * LEAST_SPREAD * mean * mean;
@@ -214,7 +225,11 @@ impl<'a> Residual<'a> {
         let (width, height) = (self.width, self.height());
         let at = |x: f64, y: f64| {
             let whole = (x >= 0.0) & (y >= 0.0) & (x < width as f64) & (y < height as f64);
-            if whole { self.truth[y as usize * width + x as usize] } else { 0.0 }
+            if whole {
+                self.truth[y as usize * width + x as usize]
+            } else {
+                0.0
+            }
         };
         let mut found = Vec::new();
         for dx in STEPS {
@@ -304,7 +319,14 @@ impl<'a> Residual<'a> {
     fn elsewhere(&self, is_there: &dyn Fn(usize) -> bool) -> f64 {
         let there = (0..self.truth.len()).filter(|&i| is_there(i)).count();
         let noise = self.noise * there as f64 / self.truth.len() as f64;
-        noise + self.of(|i| if is_there(i) { self.measured[i] } else { self.truth[i] })
+        noise
+            + self.of(|i| {
+                if is_there(i) {
+                    self.measured[i]
+                } else {
+                    self.truth[i]
+                }
+            })
     }
 }
 
@@ -328,7 +350,9 @@ mod tests {
     fn cosine() -> Covariate {
         Covariate {
             name: "the cosine at the receiver",
-            values: (0..WIDTH * WIDTH).map(|i| 1.0 - 0.015 * (i % WIDTH) as f64).collect(),
+            values: (0..WIDTH * WIDTH)
+                .map(|i| 1.0 - 0.015 * (i % WIDTH) as f64)
+                .collect(),
         }
     }
 
@@ -338,7 +362,10 @@ mod tests {
             let [a, b, c, d] = philox([i as u32, 0, 4, 0], [8, 9]);
             v * (1.0 + 0.01 * libm::sqrt(6.0) * (uniform(a, b) + uniform(c, d) - 1.0))
         });
-        (measured.collect(), image.iter().map(|v| 1e-4 * v * v).collect())
+        (
+            measured.collect(),
+            image.iter().map(|v| 1e-4 * v * v).collect(),
+        )
     }
 
     fn found(image: &[f64]) -> Option<Pattern> {
@@ -354,7 +381,11 @@ mod tests {
         let cosines = cosine().values;
         let at = |x: i64, y: i64| {
             let inside = x >= 0 && y >= 0;
-            if inside { truth[y as usize * WIDTH + x as usize] } else { 0.0 }
+            if inside {
+                truth[y as usize * WIDTH + x as usize]
+            } else {
+                0.0
+            }
         };
         let of = |f: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..truth.len()).map(f).collect() };
         assert_eq!(found(&truth), None);
@@ -372,7 +403,13 @@ mod tests {
         assert_eq!(found(&low), Some(Pattern::Shift(0.0, 1.0)));
         let flipped = of(&|i| truth[(WIDTH - 1 - i / WIDTH) * WIDTH + i % WIDTH]);
         assert_eq!(found(&flipped), Some(Pattern::Flip(false, true)));
-        let lost = of(&|i| if i % WIDTH == WIDTH - 1 { 0.0 } else { truth[i] });
+        let lost = of(&|i| {
+            if i % WIDTH == WIDTH - 1 {
+                0.0
+            } else {
+                truth[i]
+            }
+        });
         assert!(matches!(found(&lost), Some(Pattern::Frame(_))));
         let clamped = of(&|i| truth[i].min(3.0));
         assert!(matches!(found(&clamped), Some(Pattern::Bright(f)) if f < 0.8));

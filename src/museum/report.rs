@@ -13,7 +13,11 @@ fn reason(row: &Row) -> String {
     match (row.exhibit, unkillable, row.is_as_expected()) {
         (_, Some(reason), true) => reason.to_owned(),
         (Some(_), None, false) => {
-            format!("not noticed in {} of {} seeds", row.trials.len() - row.noticed(), row.trials.len())
+            format!(
+                "not noticed in {} of {} seeds",
+                row.trials.len() - row.noticed(),
+                row.trials.len()
+            )
         }
         (Some(_), None, true) => String::new(),
         (None, _, true) => String::new(),
@@ -30,7 +34,11 @@ pub fn text(matrix: &Matrix) -> String {
     for row in matrix.controls.iter().chain(&matrix.rows) {
         let id = row.exhibit.map_or("(no fault)", |e| e.id);
         let killed = format!("{}/{}", row.noticed(), row.trials.len());
-        let by = row.trials.iter().find(|t| t.noticed).map_or("", |t| t.by.as_str());
+        let by = row
+            .trials
+            .iter()
+            .find(|t| t.noticed)
+            .map_or("", |t| t.by.as_str());
         let _ = writeln!(
             text,
             "{id:<28} {:<22} {killed:>7} {:>8.1e} {:>8.1}  {by}",
@@ -57,11 +65,18 @@ fn counts(matrix: &Matrix) -> [usize; 3] {
         }
     }
     let is_killed = |e: &&&Exhibit| {
-        let mut of = matrix.rows.iter().filter(|r| r.exhibit.is_some_and(|x| x.id == e.id));
+        let mut of = matrix
+            .rows
+            .iter()
+            .filter(|r| r.exhibit.is_some_and(|x| x.id == e.id));
         e.unkillable.is_none() && of.all(Row::killed)
     };
     let unkillable = ids.iter().filter(|e| e.unkillable.is_some()).count();
-    [ids.len() - unkillable, ids.iter().filter(is_killed).count(), unkillable]
+    [
+        ids.len() - unkillable,
+        ids.iter().filter(is_killed).count(),
+        unkillable,
+    ]
 }
 
 fn summary(matrix: &Matrix) -> String {
@@ -127,7 +142,11 @@ pub fn markdown(matrix: &Matrix, command: &str) -> String {
     let _ = writeln!(page, "Written by `{command}`.\n\n{}\n", summary(matrix));
     page.push_str(MATRIX);
     for row in &matrix.rows {
-        let by = row.trials.iter().find(|t| t.noticed).map_or("", |t| t.by.as_str());
+        let by = row
+            .trials
+            .iter()
+            .find(|t| t.noticed)
+            .map_or("", |t| t.by.as_str());
         let _ = writeln!(
             page,
             "| {} | {} | {}/{} | {:.1e} | {:.1} | {by} | {} |",
@@ -137,7 +156,9 @@ pub fn markdown(matrix: &Matrix, command: &str) -> String {
             row.trials.len(),
             row.worst(|t| t.paths as f64),
             row.worst(|t| t.seconds),
-            row.looks_like().unwrap_or_default().trim_start_matches("looks like "),
+            row.looks_like()
+                .unwrap_or_default()
+                .trim_start_matches("looks like "),
         );
     }
     page.push_str(CONTROLS);
@@ -158,7 +179,11 @@ pub fn markdown(matrix: &Matrix, command: &str) -> String {
         if core::mem::replace(&mut last, e.id) == e.id {
             continue;
         }
-        let _ = writeln!(page, "- **{}**: {} At: {}. Source: {}.", e.id, e.description, e.injection, e.source);
+        let _ = writeln!(
+            page,
+            "- **{}**: {} At: {}. Source: {}.",
+            e.id, e.description, e.injection, e.source
+        );
         if let Some(reason) = e.unkillable {
             let _ = writeln!(page, "  Not noticed by any finite test of means: {reason}.");
         }
@@ -197,7 +222,9 @@ fn baselines(matrix: &Matrix, page: &mut String) {
         matrix.rows.iter().filter(is)
     };
     let caught = |of: fn(&super::baselines::Accepted) -> bool| {
-        killable().filter(|r| r.accepted.as_ref().is_some_and(|a| !of(a))).count()
+        killable()
+            .filter(|r| r.accepted.as_ref().is_some_and(|a| !of(a)))
+            .count()
     };
     let false_alarms = |of: fn(&super::baselines::Accepted) -> bool| {
         let alarm = |r: &&Row| r.accepted.as_ref().is_some_and(|a| !of(a));
@@ -229,11 +256,13 @@ const MATRIX: &str = "## Kill matrix\n\nStand: integrator, scene, bandwidth [rad
     | fault | stand | killed | paths | seconds | noticed as (first seed) | looks like |\n\
     | --- | --- | ---: | ---: | ---: | --- | --- |\n";
 
-const CONTROLS: &str = "\n## Without a fault\n\n| stand | called different | paths |\n| --- | ---: | ---: |\n";
+const CONTROLS: &str =
+    "\n## Without a fault\n\n| stand | called different | paths |\n| --- | ---: | ---: |\n";
 
 const BASELINES: &str = "\n## Other acceptance rules on the same faults\n\nThe rules of pbrt-v4's analytic tests (mean within 0.025), Mitsuba 3's render \
     test (z test in each pixel, variance floored at 1e-4, 0.25 % of the pixels tolerated) and Blender's image difference \
-    (more than 0.016 of 8-bit pictures in more than 1 % of the pixels), at the number of paths of our verdict with the first seed, up to 256 replicates. A rule is right \
+    (more than 0.016 of 8-bit pictures in more than 1 % of the pixels), at the number of paths of our verdict with the first seed, up to 256 replicates. Blender's reference is an image without the fault and with the same seed, so that noise \
+    repeats: it can tell that something has changed since it was made, not that it was wrong then. A rule is right \
     when it fails a fault and passes a stand without one. See `src/museum/baselines.rs` for sources. These rules have other aims \
     than ours (a reference from the same code, a picture for people); the table says what they see, not what they are worth.\n\n\
     | fault | stand | nephroid | pbrt-v4 | Mitsuba 3 | Blender |\n\

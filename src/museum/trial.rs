@@ -83,8 +83,14 @@ impl Hall {
         let shape = first_shape(sound.as_ref(), &pair.plan, stand.bandwidth, &entry);
         let regions = Regions::quadtree(width, height);
         let kernel = None;
-        let expected =
-            self.truths.of(scene, &entry, &pair.plan, &regions, kernel, &shape.bandwidths)?;
+        let expected = self.truths.of(
+            scene,
+            &entry,
+            &pair.plan,
+            &regions,
+            kernel,
+            &shape.bandwidths,
+        )?;
         let at_half = means_at_half(&mut self.truths, &entry, &pair, &regions, None, &shape)?;
         Ok(SetUp {
             stand: *stand,
@@ -143,7 +149,9 @@ impl Hall {
         class: usize,
     ) -> Option<String> {
         let expected = set_up.expected[class].as_ref().map(|e| e.image.value);
-        let means = expected.zip(set_up.at_half[class]).map(|(mean, half)| [mean, half]);
+        let means = expected
+            .zip(set_up.at_half[class])
+            .map(|(mean, half)| [mean, half]);
         let image = self.truths.image(set_up.scene);
         diagnosis::of(&Subject {
             entry: &set_up.entry,
@@ -179,9 +187,14 @@ impl Hall {
             demand,
         );
         // A class rather than the sum of all.
-        let different = evidence.judged.iter().find(|j| j.finding.state == State::Different);
+        let different = evidence
+            .judged
+            .iter()
+            .find(|j| j.finding.state == State::Different);
         let by = different.map(|j| {
-            let class = j.class.map_or("all".to_owned(), |c| set_up.plan[c].class.to_string());
+            let class = j
+                .class
+                .map_or("all".to_owned(), |c| set_up.plan[c].class.to_string());
             let finding = &j.finding;
             match (&finding.place, finding.effect) {
                 (Some(place), _) => format!("{class}, {place}"),
@@ -239,11 +252,22 @@ impl SetUp {
     /// Two replicates with different seeds that are the same: sums of thousands of random numbers are not equal by chance.
     fn repeats(&self, prepared: &dyn Prepared, seeds: Seeds) -> Trial {
         let (canvas, regions) = (self.canvas(), &self.regions);
-        let found =
-            run_replicates(prepared, canvas, regions, &self.shape, seeds, FINAL, 0..REPLICATES);
+        let found = run_replicates(
+            prepared,
+            canvas,
+            regions,
+            &self.shape,
+            seeds,
+            FINAL,
+            0..REPLICATES,
+        );
         let mut sums: Vec<Vec<u64>> = found
             .iter()
-            .map(|r| (0..self.plan.len()).map(|l| r.mean(l, 0).to_bits()).collect())
+            .map(|r| {
+                (0..self.plan.len())
+                    .map(|l| r.mean(l, 0).to_bits())
+                    .collect()
+            })
             .collect();
         let all = sums.len();
         sums.sort();

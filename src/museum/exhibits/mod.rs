@@ -129,8 +129,7 @@ pub fn all() -> impl Iterator<Item = &'static Exhibit> {
 }
 
 /// Scenes of the museum alone: name and TOML.
-pub const SCENES: [(&str, &str); 1] =
-    [("museum-wall", include_str!("../scenes/museum-wall.toml"))];
+pub const SCENES: [(&str, &str); 1] = [("museum-wall", include_str!("../scenes/museum-wall.toml"))];
 
 /// The scene of a stand.
 ///
