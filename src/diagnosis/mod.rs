@@ -2,33 +2,29 @@
 //!
 //! Runs only after a "different", on replicates of its own, and decides nothing: a hint for the person who has to find the
 //! mistake, with the numbers it is taken from. Where the truth is known pixel by pixel the residual image is compared with
-//! [`patterns`]; where only the mean of a class is known, at finite bandwidth, its ratio to the truth is compared with that at half the bandwidth.
+//! [`patterns`]; where only the mean
+//! of a class is known, at finite bandwidth, its ratio to the truth is compared with that at half the bandwidth.
 
 pub mod constants;
 pub mod covariates;
 pub mod images;
 pub mod patterns;
+mod suite;
+mod trend;
 
 use nephroid_analytic::scene::Entry;
 
-use crate::error::Error;
-use crate::integrators::{Kernel, Plan, Prepared, Technique, Treatment};
-use crate::judge::verdict::State;
-use crate::regions::Regions;
+use crate::integrators::{Prepared, Technique, Treatment};
 use crate::truth::TruthImage;
-use crate::verify::expected::Truths;
 use crate::verify::replicates::{Canvas, Seeds, Shape};
-use crate::verify::run::{Request, first_shape};
-use crate::verify::suite::Pair;
-use crate::verify::verdicts::Verdict;
 use constants::{candidates, names};
 use images::{Images, sample};
 use patterns::{Pattern, Residual, is_one};
+pub use suite::{annotate, means_at_half};
 
 /// Phases of the streams, apart from those of pilots and of the test.
 const PHASE: u32 = 1001;
 const PHASE_MORE: u32 = 1002;
-const PHASE_HALF: u32 = 1003;
 /// Replicates of the image, and of each variation of it.
 const REPLICATES: u32 = 128;
 const VARIED: u32 = 48;
@@ -283,78 +279,6 @@ impl Subject<'_> {
             ),
         })
     }
-
-    /// Names of a factor of a regularized class at a multiple of its bandwidths.
-    fn names_at(&self, times: f64, [factor, error]: [f64; 2]) -> Vec<String> {
-        let bandwidths = &self.shape.bandwidths;
-        let is_angle = matches!(self.truth, Known::Means(Technique::Camera, _));
-        let mut list = candidates(self.entry, Some(times * bandwidths[0]));
-        list.retain(|c| is_angle || !c.name.contains('α'));
-        if let [_, .., last] = bandwidths[..] {
-            let squares = bandwidths.iter().map(|r| r * r).sum::<f64>() / bandwidths.len() as f64;
-            let name = "mean r² over the last r², the newest normalisation".to_owned();
-            let value = squares / (last * last);
-            list.push(constants::Named { name, value });
-        }
-        names(&list, factor, error)
-    }
-
-    /// From class means at two bandwidths.
-    fn trend(&self, [mean, error]: [f64; 2], [truth, truth_at_half]: [f64; 2]) -> Option<String> {
-        let half = Shape {
-            bandwidths: self.shape.bandwidths.iter().map(|b| 0.5 * b).collect(),
-            paths_per_iteration: 2 * self.shape.paths_per_iteration,
-        };
-        let [mean_half, error_half] = self.drawn(&half, PHASE_HALF, VARIED).image_mean();
-        let ratio = [mean / truth, error / truth];
-        if (ratio[0] - 1.0).abs() < 3.0 * ratio[1] {
-            return None;
-        }
-        let at_half = [mean_half / truth_at_half, error_half / truth_at_half];
-        let both = format!(
-            "{}, and {} at half the bandwidth",
-            shown(ratio),
-            shown(at_half)
-        );
-        // A name that holds at both bandwidths.
-        let also = self.names_at(0.5, at_half);
-        let mut named = self.names_at(1.0, ratio);
-        named.retain(|n| also.contains(n));
-        if !named.is_empty() {
-            let named = shown_names(&named);
-            return Some(format!("looks like a factor of the mean{named}: {both}"));
-        }
-        let change = at_half[0] / ratio[0];
-        let spread = change * libm::hypot(ratio[1] / ratio[0], at_half[1] / at_half[0]);
-        let is =
-            |expected: f64| (change - expected).abs() < f64::max(4.0 * spread, 0.02 * expected);
-        if is(0.5) {
-            return Some(format!(
-                "looks like a factor proportional to the bandwidth: {both}"
-            ));
-        }
-        if is(2.0) {
-            return Some(format!(
-                "looks like a factor proportional to 1/bandwidth: {both}"
-            ));
-        }
-        if is(0.25) {
-            return Some(format!(
-                "looks like contributions that do not grow as the kernel narrows, clamped or not normalised: a factor \
-                 proportional to the square of the bandwidth, {both}"
-            ));
-        }
-        let shrinks = ((at_half[0] - 1.0) / (ratio[0] - 1.0)).abs();
-        if shrinks > 0.75 {
-            return Some(format!(
-                "looks like a bias of the mean that does not shrink with the bandwidth (a constant factor, a floor of the bandwidth, light \
-                 of another class): {both}"
-            ));
-        }
-        Some(format!(
-            "looks like another kernel, bandwidth or schedule than the one stated, the bias shrinks with it: {both}"
-        ))
-    }
 }
 
 /// ` = π or 2`, or nothing.
@@ -364,98 +288,4 @@ fn shown_names(names: &[String]) -> String {
     } else {
         format!(" = {}", names.join(" or "))
     }
-}
-
-/// Means of each class at half of the bandwidths; `None` for classes that are not regularized.
-///
-/// # Errors
-/// A kernel or a bandwidth that does not fit.
-pub fn means_at_half(
-    truths: &mut Truths,
-    entry: &Entry,
-    pair: &Pair,
-    regions: &Regions,
-    kernel: Option<Kernel>,
-    shape: &Shape,
-) -> Result<Vec<Option<f64>>, Error> {
-    let half: Vec<f64> = shape.bandwidths.iter().map(|b| 0.5 * b).collect();
-    let kernel = kernel.and_then(|k| k.to_string().parse().ok());
-    // Only what is regularized, so that no image is computed for this.
-    let plan: Plan = pair
-        .plan
-        .iter()
-        .map(|class| match class.treatment {
-            Treatment::Exact(_) => crate::integrators::ClassPlan {
-                treatment: Treatment::NotSampled,
-                ..class.clone()
-            },
-            _ => class.clone(),
-        })
-        .collect();
-    let expected = truths.of(pair.scene, entry, &plan, regions, kernel, &half)?;
-    Ok(expected
-        .into_iter()
-        .map(|e| e.map(|e| e.image.value))
-        .collect())
-}
-
-/// Adds what they look like to the verdicts of a suite that are different.
-///
-/// # Errors
-/// A kernel or a bandwidth that does not fit.
-pub fn annotate(
-    request: &Request,
-    verdicts: &mut [Verdict],
-    truths: &mut Truths,
-) -> Result<(), Error> {
-    // A changed scene's verdict says by which change it is.
-    let is_told = |v: &&mut Verdict| v.finding.state == State::Different && v.variation.is_none();
-    for verdict in verdicts.iter_mut().filter(is_told) {
-        let scene = request
-            .scenes
-            .iter()
-            .position(|s| s.entry.name == verdict.scene);
-        let integrator = request
-            .integrators
-            .iter()
-            .position(|i| i.name() == verdict.integrator);
-        let (Some(scene), Some(integrator)) = (scene, integrator) else {
-            continue;
-        };
-        let entry = &request.scenes[scene].entry;
-        let classes = entry.kind.classes();
-        let Some(layer) = classes.iter().position(|c| c.to_string() == verdict.class) else {
-            continue;
-        };
-        let method = request.integrators[integrator].as_ref();
-        let plan = method.plan(entry);
-        let pair = Pair {
-            scene,
-            integrator,
-            plan,
-        };
-        let (width, height) = (entry.camera.width, entry.camera.height);
-        let shape = first_shape(method, &pair.plan, request.bandwidth, entry);
-        let treatment = pair.plan[layer].treatment;
-        let means = match (treatment, verdict.truth) {
-            (Treatment::Regularized(_), Some(truth)) => {
-                let regions = Regions::image(width, height);
-                let half = means_at_half(truths, entry, &pair, &regions, request.kernel, &shape)?;
-                half[layer].map(|half| [truth.value, half])
-            }
-            _ => None,
-        };
-        let Some(truth) = Known::of(treatment, truths.image(scene), layer, means) else {
-            continue;
-        };
-        verdict.looks_like = of(&Subject {
-            entry,
-            prepared: method.prepare(entry).as_ref(),
-            layer,
-            shape: &shape,
-            seeds: Seeds::new(request.seed, &entry.name, method.name()),
-            truth,
-        });
-    }
-    Ok(())
 }
