@@ -197,13 +197,19 @@ fn uniformity(runs: u32) -> bool {
         for replicates in [64, 256] {
             let mut p: Vec<f64> = (0..n)
                 .into_par_iter()
-                .map(|run| difference_p(&sample(&draws(law, run, 100 + replicates as u32, replicates)), ONE))
+                .map(|run| {
+                    difference_p(
+                        &sample(&draws(law, run, 100 + replicates as u32, replicates)),
+                        ONE,
+                    )
+                })
                 .collect();
             p.sort_by(f64::total_cmp);
             let count = f64::from(n);
-            let off = p.iter().enumerate().map(|(i, p)| {
-                (p - i as f64 / count).max((i + 1) as f64 / count - p)
-            });
+            let off = p
+                .iter()
+                .enumerate()
+                .map(|(i, p)| (p - i as f64 / count).max((i + 1) as f64 / count - p));
             let distance = off.fold(0.0, f64::max);
             let x = distance * sqrt(count);
             let ks: f64 = (1..=20)
@@ -228,7 +234,9 @@ fn tails(runs: u32) -> bool {
     const NOMINAL: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
     let n = 100 * runs;
     let mut good = true;
-    println!("{n} samples each; false alarms over nominal: Student's t, and with the allowance for skewness");
+    println!(
+        "{n} samples each; false alarms over nominal: Student's t, and with the allowance for skewness"
+    );
     for law in LAWS {
         for replicates in [32, 64, 256] {
             let one = |run: u32| {
@@ -254,13 +262,20 @@ fn tails(runs: u32) -> bool {
                 }
                 a
             };
-            let counts = (0..n).into_par_iter().map(one).reduce(Default::default, add);
+            let counts = (0..n)
+                .into_par_iter()
+                .map(one)
+                .reduce(Default::default, add);
             for (side, name) in ["dark", "bright"].iter().enumerate() {
                 print!("{law:?} {replicates} too {name}:");
                 for (k, &level) in NOMINAL.iter().enumerate() {
                     let expected = level * f64::from(n);
                     let [student, tail] = [0, 1].map(|m| counts[m][side][k] as f64);
-                    print!("  {level:.0e} {:.2} {:.2}", student / expected, tail / expected);
+                    print!(
+                        "  {level:.0e} {:.2} {:.2}",
+                        student / expected,
+                        tail / expected
+                    );
                     // Five standard deviations; at 1e-2 Student's t is used as it is, and its two tails share the error.
                     if level < 1.3e-3 {
                         good &= tail <= 1.1 * expected + 5.0 * sqrt(expected);
@@ -285,12 +300,16 @@ fn margins(runs: u32) -> bool {
                     .filter(|&run| {
                         let mut values = draws(law, run, 300, 256);
                         // Replicates a tenth as noisy, so that only one side of the margin is in sight.
-                        values.iter_mut().for_each(|v| *v = (1.0 + off) * (1.0 + 0.5 * (*v - 1.0)));
+                        values
+                            .iter_mut()
+                            .for_each(|v| *v = (1.0 + off) * (1.0 + 0.5 * (*v - 1.0)));
                         equivalence_p(&sample(&values), ONE, margin) <= level
                     })
                     .count() as f64;
                 let expected = level * f64::from(n);
-                println!("{law:?}, bias {off:+}: equivalent at {level:e} in {passed} of {n}, {expected} allowed");
+                println!(
+                    "{law:?}, bias {off:+}: equivalent at {level:e} in {passed} of {n}, {expected} allowed"
+                );
                 good &= passed <= 1.25 * expected + 5.0 * sqrt(expected);
             }
         }

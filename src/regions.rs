@@ -68,7 +68,8 @@ impl Regions {
                 break;
             }
             // Widths differ by a pixel at most, so that no tile falls below the least.
-            let cut = |length: u32, i: u32| (u64::from(length) * u64::from(i) / u64::from(parts)) as u32;
+            let cut =
+                |length: u32, i: u32| (u64::from(length) * u64::from(i) / u64::from(parts)) as u32;
             for j in 0..parts {
                 for i in 0..parts {
                     let (x, y) = (cut(width, i), cut(height, j));
@@ -103,7 +104,11 @@ impl Regions {
         if selected.len() != width as usize * height as usize {
             return None;
         }
-        let pixels: Vec<u32> = (0..).zip(selected).filter(|(_, s)| **s).map(|(i, _)| i).collect();
+        let pixels: Vec<u32> = (0..)
+            .zip(selected)
+            .filter(|(_, s)| **s)
+            .map(|(i, _)| i)
+            .collect();
         (!pixels.is_empty()).then(|| Regions {
             width,
             height,
@@ -132,7 +137,10 @@ impl Regions {
 
     /// Sums of a layer over each area, in index order, and the number of its pixels that are not zero.
     pub fn reduce(&self, layer: &[f64]) -> Vec<(f64, u64)> {
-        self.areas.iter().map(|area| self.sum(area, layer)).collect()
+        self.areas
+            .iter()
+            .map(|area| self.sum(area, layer))
+            .collect()
     }
 
     /// Number of pixels of each area.
@@ -209,9 +217,8 @@ mod tests {
             let deepest = regions.areas().iter().map(level_of).max().unwrap();
             assert!(deepest >= 1);
             for level in 1..=deepest {
-                let of_level = || {
-                    (0..sums.len()).filter(|&k| level_of(&regions.areas()[k]) == level)
-                };
+                let of_level =
+                    || (0..sums.len()).filter(|&k| level_of(&regions.areas()[k]) == level);
                 assert_eq!(of_level().map(|k| sums[k].0).sum::<f64>(), sums[0].0);
                 assert_eq!(of_level().map(|k| sums[k].1).sum::<u64>(), sums[0].1);
                 assert_eq!(of_level().map(|k| pixels[k]).sum::<u64>(), pixels[0]);

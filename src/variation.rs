@@ -167,7 +167,11 @@ fn resize(table: &mut Table, f: impl Fn(i64) -> Option<i64>) {
 /// Whether a number is a length [m].
 pub fn is_length(table: &str, key: &str) -> bool {
     let pixels = table == "camera" && (key == "width" || key == "height");
-    !PURE.contains(&key) && !COUNTS.contains(&key) && !key.ends_with("_degrees") && !pixels && key != "wave_vector"
+    !PURE.contains(&key)
+        && !COUNTS.contains(&key)
+        && !key.ends_with("_degrees")
+        && !pixels
+        && key != "wave_vector"
 }
 
 /// Applies `f(table, key, index, value)` to every number of an entry.
@@ -227,7 +231,12 @@ mod tests {
                 assert!(changed.is_some(), "{name} {variation:?}");
             }
         }
-        assert!(Variation::Moved([1e4, 1e4]).of("mirror-wall").unwrap().is_some());
+        assert!(
+            Variation::Moved([1e4, 1e4])
+                .of("mirror-wall")
+                .unwrap()
+                .is_some()
+        );
         assert!(Variation::Moved([1e4, 1e4]).of("cup").unwrap().is_none());
         assert!(Variation::Finer.of("no-such-scene").is_err());
     }

@@ -4,8 +4,8 @@ use nephroid::film::Film;
 use nephroid::integrators::Prepared;
 use nephroid::judge::hypotheses::Levels;
 use nephroid::judge::verdict::State;
-use nephroid::stream::{philox, uniform};
 use nephroid::regions::Regions;
+use nephroid::stream::{philox, uniform};
 use nephroid::verify::expected::Expected;
 use nephroid::verify::gather::{Evidence, gather};
 use nephroid::verify::replicates::{Canvas, Seeds, Shape};
@@ -179,7 +179,15 @@ fn light_in_the_wrong_place_is_found_in_a_tile() {
         };
         let seeds = Seeds::new(1, "tiles", "fake");
         let prepare = || -> Box<dyn Prepared> { Box::new(spikes) };
-        let evidence = gather(prepare, canvas, &regions, shape.clone(), seeds, &expected, demand);
+        let evidence = gather(
+            prepare,
+            canvas,
+            &regions,
+            shape.clone(),
+            seeds,
+            &expected,
+            demand,
+        );
         let f = &evidence.judged[0].finding;
         assert_eq!(f.state, state, "{f:?}");
         assert_eq!(f.tiles, 20);

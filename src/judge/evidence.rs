@@ -3,9 +3,9 @@
 //! A replicate is an independent repetition with its own seed. A region is an area of the image, of one path class or of
 //! the sum of several. Only the mean of each replicate enters the tests; their spread is the only variance that is used.
 
-use crate::regions::{Area, Regions};
 use super::tails::Tail;
 use crate::film::{Film, compensated_sum};
+use crate::regions::{Area, Regions};
 
 /// Below this many contributions that are not zero, a replicate's mean is too far from normal.
 pub const FEWEST_CONTRIBUTIONS: u64 = 200;
@@ -83,7 +83,9 @@ impl Replicate {
                 replicate.means.push(sum / (paths * pixels[k] as f64));
                 // A film counts contributions per layer; a pixel that is not zero has had one at least.
                 let whole = areas[k] == Area::Image;
-                replicate.contributions.push(if whole { nonzero } else { seen });
+                replicate
+                    .contributions
+                    .push(if whole { nonzero } else { seen });
             }
             replicate.invalid.push(Invalid::of_layer(layer, film.width));
             replicate
@@ -126,7 +128,10 @@ impl Tally {
     pub fn push(&mut self, replicate: &Replicate, layers: &[usize], area: usize) {
         let index = self.count as usize;
         let x: f64 = layers.iter().map(|&l| replicate.mean(l, area)).sum();
-        let contributions = layers.iter().map(|&l| replicate.contributions(l, area)).sum();
+        let contributions = layers
+            .iter()
+            .map(|&l| replicate.contributions(l, area))
+            .sum();
         for found in layers.iter().map(|&l| replicate.invalid[l]) {
             if self.invalid.first.is_none() && found.first.is_some() {
                 (self.invalid.first, self.invalid_replicate) = (found.first, index);
@@ -161,7 +166,8 @@ impl Tally {
     pub fn correlation(&self) -> f64 {
         let n = self.count as f64;
         let off = self.mean - self.first;
-        let covariance = self.neighbours - off * (2.0 * n * off - self.last) + (n - 1.0) * off * off;
+        let covariance =
+            self.neighbours - off * (2.0 * n * off - self.last) + (n - 1.0) * off * off;
         covariance / self.powers[0]
     }
 
@@ -265,10 +271,18 @@ mod tests {
         }
         let (mean, variance) = moments(&values);
         let s = tally.sample();
-        let third = values.iter().map(|v| (v - mean) * (v - mean) * (v - mean)).sum::<f64>() / 100.0;
+        let third = values
+            .iter()
+            .map(|v| (v - mean) * (v - mean) * (v - mean))
+            .sum::<f64>()
+            / 100.0;
         let skewness = third / libm::pow(0.99 * variance, 1.5);
         assert!((s.mean - mean).abs() < 1e-9 && (s.variance / variance - 1.0).abs() < 1e-9);
-        assert!((s.skewness - skewness).abs() < 1e-7, "{} {skewness}", s.skewness);
+        assert!(
+            (s.skewness - skewness).abs() < 1e-7,
+            "{} {skewness}",
+            s.skewness
+        );
         let pairs = values.windows(2).map(|w| (w[0] - mean) * (w[1] - mean));
         let correlation = pairs.sum::<f64>() / (99.0 * variance);
         assert!((tally.correlation() - correlation).abs() < 1e-9);

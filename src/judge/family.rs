@@ -54,7 +54,8 @@ mod tests {
                 .filter(|&run| {
                     let p: Vec<f64> = (0..20)
                         .map(|k| {
-                            let [a, b, ..] = philox([run, if dependent { k / 10 } else { k }, 0, 0], [3, 4]);
+                            let [a, b, ..] =
+                                philox([run, if dependent { k / 10 } else { k }, 0, 0], [3, 4]);
                             uniform(a, b)
                         })
                         .collect();

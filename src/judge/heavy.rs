@@ -86,7 +86,10 @@ mod tests {
         for a in [1.0, 1.5, 2.0, 3.0] {
             let found = hill(&draw(20_000, |u| libm::pow(u, -1.0 / a))).unwrap();
             // Five standard errors.
-            assert!((found.index - a).abs() < 5.0 * found.error, "{a}: {found:?}");
+            assert!(
+                (found.index - a).abs() < 5.0 * found.error,
+                "{a}: {found:?}"
+            );
             assert!(found.is_stable);
             assert_eq!(found.variance_is_in_doubt(), a <= 2.0, "{a}: {found:?}");
         }

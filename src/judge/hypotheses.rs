@@ -46,7 +46,9 @@ pub fn difference_p(sample: &Sample, truth: Bounded) -> f64 {
     if distance <= 0.0 {
         return 1.0;
     }
-    let p = sample.tail(off > 0.0).survival(distance / sample.standard_error());
+    let p = sample
+        .tail(off > 0.0)
+        .survival(distance / sample.standard_error());
     (2.0 * p).min(1.0)
 }
 

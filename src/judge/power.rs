@@ -78,9 +78,7 @@ pub fn replicates_needed(
     if !(usable > 0.0) || !(variance.is_finite()) {
         return None;
     }
-    let enough = |n: f64| {
-        standard_errors_needed(levels, n) * libm::sqrt(variance / n) <= usable
-    };
+    let enough = |n: f64| standard_errors_needed(levels, n) * libm::sqrt(variance / n) <= usable;
     // What is needed falls with the replicates: doubled until they do, then bisected.
     let mut high = FEWEST_PLANNED as f64;
     if enough(high) {

@@ -50,12 +50,22 @@ mod tests {
 
     #[test]
     fn no_more_than_all_is_spent() {
-        for (planned, most) in [(1, 1), (64, 64), (100, 1_000_000), (1 << 20, 1 << 20), (5000, 7000)] {
+        for (planned, most) in [
+            (1, 1),
+            (64, 64),
+            (100, 1_000_000),
+            (1 << 20, 1 << 20),
+            (5000, 7000),
+        ] {
             let looks = looks(planned, most);
             assert!(looks.iter().map(|l| l.share).sum::<f64>() <= 1.0);
             assert!(looks.windows(2).all(|w| w[0].replicates < w[1].replicates));
             assert_eq!(looks.last().unwrap().replicates, most);
-            assert!(looks.iter().any(|l| l.replicates == planned && l.share == 0.5));
+            assert!(
+                looks
+                    .iter()
+                    .any(|l| l.replicates == planned && l.share == 0.5)
+            );
         }
         assert_eq!(looks(500, 100).last().unwrap().replicates, 100);
     }

@@ -102,8 +102,8 @@ impl Tail {
         let (mut low, mut high) = (plain, end);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            let value = log(student_survival(middle, self.dof))
-                + self.growth * middle * middle * middle;
+            let value =
+                log(student_survival(middle, self.dof)) + self.growth * middle * middle * middle;
             if value > target {
                 low = middle;
             } else {
@@ -149,8 +149,7 @@ mod tests {
                     if x.is_finite() {
                         let p = tail.survival(x);
                         let near = level > student_survival(NEAR, tail.dof());
-                        let jump = student_survival(NEAR, tail.dof()) >= level
-                            && x < NEAR + 0.2;
+                        let jump = student_survival(NEAR, tail.dof()) >= level && x < NEAR + 0.2;
                         assert!(
                             near || jump || (p / level - 1.0).abs() < 1e-6,
                             "{n} {skewness} {level}: {x} {p}"

@@ -132,7 +132,8 @@ impl Finding {
             return;
         }
         self.replicates_needed = None;
-        self.reason = "decided by what other checks left of the suite's error probability".to_owned();
+        self.reason =
+            "decided by what other checks left of the suite's error probability".to_owned();
     }
 }
 
@@ -258,7 +259,11 @@ pub fn decide_at(
         }
         spent.equivalent = spent.equivalent.min(equivalent(sample, truth));
     }
-    let tested = || case.parts.iter().filter(|p| unmet_condition(&p.sample).is_none());
+    let tested = || {
+        case.parts
+            .iter()
+            .filter(|p| unmet_condition(&p.sample).is_none())
+    };
     for part in tested() {
         let p = difference_p(&part.sample, part.truth) / (part.weight * share);
         // A bias that is shown to be inside the margin there is no difference.
@@ -281,7 +286,8 @@ pub fn decide_at(
     let place = spent.place.clone().filter(|_| bias_established);
     let reason = match (&place, state) {
         (Some(place), State::Different) if place == SEEDS => {
-            "replicates depend on their predecessors: their seeds do not make them independent".to_owned()
+            "replicates depend on their predecessors: their seeds do not make them independent"
+                .to_owned()
         }
         (Some(place), State::Different) => {
             let part = case.parts.iter().find(|p| p.place == *place);

@@ -12,7 +12,11 @@ pub fn outcome(outcome: &Outcome) -> String {
     let mut previous = None;
     let mut variation = None;
     for v in &outcome.verdicts {
-        let pair = (v.scene.as_str(), v.integrator.as_str(), v.variation.as_deref());
+        let pair = (
+            v.scene.as_str(),
+            v.integrator.as_str(),
+            v.variation.as_deref(),
+        );
         let first = previous.replace(pair) != Some(pair);
         if let Some(name) = pair.2.filter(|n| variation.replace(*n) != Some(*n)) {
             let _ = writeln!(text, "{name}:");
@@ -160,7 +164,10 @@ pub fn summary(o: &Outcome) -> String {
     let weak = if weak.is_empty() {
         String::new()
     } else {
-        format!("\nPower below {DETECTION_POWER} at the margin: {}.", weak.join(", "))
+        format!(
+            "\nPower below {DETECTION_POWER} at the margin: {}.",
+            weak.join(", ")
+        )
     };
     format!(
         "{}. Effort {}, α = r = {}, seed {}, {:.1} s.\n\

@@ -125,7 +125,10 @@ pub fn gather_until(
             let shape = &size.shape;
             for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..stop) {
                 subjects.iter_mut().for_each(|s| s.push(&r));
-                layers.iter_mut().enumerate().for_each(|(l, layer)| layer.push(&r, l));
+                layers
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(l, layer)| layer.push(&r, l));
             }
             drawn = stop;
         }
@@ -191,9 +194,15 @@ fn sum(parts: &[Expected]) -> Expected {
         value: a.value + b.value,
         error: a.error + b.error,
     };
-    let image = parts.iter().fold(Bounded::default(), |s, e| add(s, e.image));
+    let image = parts
+        .iter()
+        .fold(Bounded::default(), |s, e| add(s, e.image));
     let areas = parts.iter().map(|e| e.areas.len()).min().unwrap_or(0);
-    let area = |k: usize| parts.iter().fold(Bounded::default(), |s, e| add(s, e.areas[k]));
+    let area = |k: usize| {
+        parts
+            .iter()
+            .fold(Bounded::default(), |s, e| add(s, e.areas[k]))
+    };
     Expected {
         image,
         areas: (0..areas).map(area).collect(),
@@ -233,7 +242,9 @@ impl Subject {
     }
 
     fn is_decided(&self) -> bool {
-        self.finding.as_ref().is_some_and(|f| f.state != State::Undecided)
+        self.finding
+            .as_ref()
+            .is_some_and(|f| f.state != State::Undecided)
     }
 
     fn is_different(&self) -> bool {

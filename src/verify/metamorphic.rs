@@ -180,7 +180,9 @@ impl Varied {
             whole
         };
         let kernel = request.truth_kernel();
-        let expected = truths.of(pair.scene, original, &pair.plan, &regions, kernel, bandwidths)?;
+        let expected = truths.of(
+            pair.scene, original, &pair.plan, &regions, kernel, bandwidths,
+        )?;
         Ok((expected, cropped))
     }
 }
@@ -188,6 +190,9 @@ impl Varied {
 /// Whether the bandwidth is a length.
 fn is_radius(integrator: &dyn Integrator, pair: &Pair) -> bool {
     use crate::integrators::Technique::Merge;
-    let merges = pair.plan.iter().any(|c| c.treatment == Treatment::Regularized(Merge));
+    let merges = pair
+        .plan
+        .iter()
+        .any(|c| c.treatment == Treatment::Regularized(Merge));
     merges && integrator.schedule(1.0).bandwidth(0) > NO_BANDWIDTH
 }

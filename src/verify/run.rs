@@ -119,8 +119,9 @@ fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
     };
     let different = holm(&p(|v| v.finding.p_different), level, checks);
     let equivalent = holm(&p(|v| v.finding.p_equivalent), EQUIVALENCE_LEVEL, checks);
-    for (verdict, (different, equivalent)) in
-        verdicts.iter_mut().zip(different.into_iter().zip(equivalent))
+    for (verdict, (different, equivalent)) in verdicts
+        .iter_mut()
+        .zip(different.into_iter().zip(equivalent))
     {
         let levels = Levels {
             different: different.unwrap_or(verdict.levels.different),

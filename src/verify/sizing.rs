@@ -118,7 +118,11 @@ pub fn plan(
 
 /// By how much replicates must grow.
 fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) -> u64 {
-    let samples = || checks.iter().map(|c| Sample::of_layers(pilot, &c.layers, 0));
+    let samples = || {
+        checks
+            .iter()
+            .map(|c| Sample::of_layers(pilot, &c.layers, 0))
+    };
     // What is not a number stays so with more paths.
     let seen = samples().filter(|s| s.contributions > 0 && s.invalid.pixels() == 0);
     let replicates = u64::from(PILOT_REPLICATES);
@@ -133,7 +137,8 @@ fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) 
             .next_power_of_two()
     };
     let for_seen = seen.map(wanted).max().unwrap_or(1);
-    let most_for_seen =
-        (demand.most_paths / (FEWEST_PLANNED * shape.paths())).max(1).next_power_of_two();
+    let most_for_seen = (demand.most_paths / (FEWEST_PLANNED * shape.paths()))
+        .max(1)
+        .next_power_of_two();
     for_seen.min(most_for_seen).min(1024)
 }
