@@ -1,6 +1,7 @@
 //! nephroid: a test oracle for light transport that ordinary tests cannot judge.
 
 pub mod cli;
+pub mod diagnosis;
 pub mod entry;
 pub mod error;
 pub mod evaluate;
@@ -12,6 +13,7 @@ pub mod geometry;
 pub mod golden;
 pub mod integrators;
 pub mod judge;
+pub mod museum;
 pub mod output;
 pub mod png_output;
 pub mod rates;

@@ -4,6 +4,7 @@ mod bias;
 mod converge;
 mod evaluate;
 mod explain;
+mod faults;
 mod golden;
 mod list;
 mod probe;
@@ -44,6 +45,7 @@ enum Command {
     Explain(explain::Args),
     Render(render::Args),
     Run(run::Args),
+    Faults(faults::Args),
     Golden(golden::Args),
     Stability(stability::Args),
 }
@@ -62,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Faults(args) => faults::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Stability(args) => stability::run(&args),
     };

@@ -26,7 +26,7 @@ use super::pillar::Pillar;
 use super::pinhole::Pinhole;
 use super::rectangle::Rectangle;
 use super::ripples::Ripples;
-use super::scene::{Overrides, Scene};
+use super::scene::{Overrides, Scene, taken_for};
 use super::slab::Slab;
 use super::specular::{Nothing, Specular};
 use super::sphere_cap::SphereCap;
@@ -104,7 +104,9 @@ pub fn visit<V: Visitor>(entry: &Entry, overrides: Overrides, visitor: V) -> V::
         Kind::Paraboloid(s) => visitor.chains(build.paraboloid(s)),
         Kind::ConicMirrors(s) => visitor.chains(build.conic_mirrors(s)),
         Kind::Furnace(s) => {
-            visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &s.wall))
+            let mut wall = s.wall.clone();
+            wall.albedo = taken_for(wall.albedo, overrides.albedo);
+            visitor.furnace(Furnace::new(build.point(&s.light), build.camera, &wall))
         }
         Kind::Underwater(s) => visitor.chains(build.underwater(s)),
         Kind::GlassSphere(s) => visitor.chains(build.glass_sphere(s)),
@@ -138,7 +140,10 @@ impl Build {
         Scene {
             light,
             surface,
-            floor: Floor::new(floor),
+            floor: Floor::new(&nephroid_analytic::scene::Floor {
+                albedo: taken_for(floor.albedo, self.overrides.albedo),
+                ..floor.clone()
+            }),
             camera: self.camera,
         }
     }
@@ -146,7 +151,7 @@ impl Build {
     fn point(&self, light: &PointLight) -> Point {
         Point {
             position: DVec3::from_array(light.position),
-            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+            intensity: self.strength(light.intensity),
         }
     }
 
@@ -154,19 +159,30 @@ impl Build {
         let elevation = light.elevation_degrees.to_radians();
         Directional {
             travel: DVec3::new(libm::cos(elevation), 0.0, -libm::sin(elevation)),
-            irradiance: self.overrides.light_strength.unwrap_or(light.irradiance),
+            irradiance: self.strength(light.irradiance),
         }
     }
 
     fn vertical(&self, light: &VerticalLight) -> Directional {
         Directional {
             travel: DVec3::NEG_Z,
-            irradiance: self.overrides.light_strength.unwrap_or(light.irradiance),
+            irradiance: self.strength(light.irradiance),
         }
     }
 
+    fn strength(&self, own: f64) -> f64 {
+        taken_for(own, self.overrides.light)
+    }
+
     fn reflectance(&self, own: f64) -> f64 {
-        self.overrides.reflectance.unwrap_or(own)
+        taken_for(own, self.overrides.reflectance)
+    }
+
+    fn water(&self, own: &nephroid_analytic::scene::Water) -> Water {
+        let mut water = own.clone();
+        water.index = taken_for(own.index, self.overrides.index);
+        let weight = self.overrides.transmittance.map(|f| f(own.index));
+        Water::new(&water).with_weight(weight.unwrap_or([0.0, 1.0]))
     }
 
     fn diffuse(&self, s: &DiffuseScene) -> Scene<Point, Nothing> {
@@ -184,7 +200,7 @@ impl Build {
     }
 
     fn flat_interface(&self, s: &FlatInterfaceScene) -> Scene<Point, Water> {
-        self.scene(self.point(&s.light), Water::new(&s.water), &s.floor)
+        self.scene(self.point(&s.light), self.water(&s.water), &s.floor)
     }
 
     fn concave_sphere(&self, s: &ConcaveSphereScene) -> Scene<Point, SphereCap> {
@@ -201,7 +217,7 @@ impl Build {
     fn focal(&self, light: &FocalLight, [x, y]: [f64; 2], z: f64) -> Point {
         Point {
             position: DVec3::new(x, y, z),
-            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+            intensity: self.strength(light.intensity),
         }
     }
 
@@ -234,7 +250,11 @@ impl Build {
     }
 
     fn underwater(&self, s: &UnderwaterScene) -> Scene<Point, Underwater> {
-        self.scene(self.point(&s.light), Underwater::new(s), &s.floor)
+        self.scene(
+            self.point(&s.light),
+            Underwater::new(s, self.water(&s.water)),
+            &s.floor,
+        )
     }
 
     fn pillar(&self, s: &PillarScene) -> Scene<Point, Pillar> {
@@ -263,7 +283,7 @@ impl Build {
         let plan = DVec3::new(cos, sin, 0.0) * (wall_radius - light.inset);
         let light = Point {
             position: plan.with_z(light.height),
-            intensity: self.overrides.light_strength.unwrap_or(light.intensity),
+            intensity: self.strength(light.intensity),
         };
         self.scene(light, wall, &s.floor)
     }

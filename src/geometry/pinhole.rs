@@ -42,6 +42,11 @@ impl Pinhole {
         }
     }
 
+    /// Side of a pixel on the film plane at depth 1.
+    pub fn pixel_side(&self) -> f64 {
+        self.pixel
+    }
+
     /// Number of pixels.
     pub fn pixels(&self) -> f64 {
         self.columns * self.rows

@@ -21,13 +21,27 @@ pub struct Scene<L, S> {
     pub camera: Pinhole,
 }
 
-/// Replacements of scene constants, for deliberately wrong integrators.
+/// From a scene's own constant to the one that a deliberately wrong integrator takes for it.
+pub type Mistaken = Option<fn(f64) -> f64>;
+
+/// Replacements of scene constants, for deliberately wrong integrators. The default replaces nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Intensity or irradiance of the light.
-    pub light_strength: Option<f64>,
+    pub light: Mistaken,
+    /// Albedo of the floor or the wall.
+    pub albedo: Mistaken,
     /// Reflectance of the mirror.
-    pub reflectance: Option<f64>,
+    pub reflectance: Mistaken,
+    /// Index of the water.
+    pub index: Mistaken,
+    /// From the index of the water to the a and b of a + b T, which is taken for the transmittance T.
+    pub transmittance: Option<fn(f64) -> [f64; 2]>,
+}
+
+/// What is taken for a constant.
+pub(super) fn taken_for(own: f64, mistaken: Mistaken) -> f64 {
+    mistaken.map_or(own, |f| f(own))
 }
 
 /// Where a ray reaches the floor.

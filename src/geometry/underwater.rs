@@ -19,9 +19,9 @@ pub struct Underwater {
 
 impl Underwater {
     /// Prepares a validated scene's surface.
-    pub fn new(scene: &UnderwaterScene) -> Self {
+    pub fn new(scene: &UnderwaterScene, surface: Water) -> Self {
         Underwater {
-            surface: Water::new(&scene.water),
+            surface,
             surface_z: scene.water.surface_z,
             classes: scene.classes(),
         }

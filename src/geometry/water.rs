@@ -15,6 +15,8 @@ use super::specular::{Meeting, Specular};
 pub struct Water {
     surface_z: f64,
     index: f64,
+    /// a + b T is the weight, of the transmittance T: 0 and 1.
+    weight: [f64; 2],
 }
 
 impl Water {
@@ -23,7 +25,13 @@ impl Water {
         Water {
             surface_z: water.surface_z,
             index: water.index,
+            weight: [0.0, 1.0],
         }
+    }
+
+    /// The same with a + b T in place of the transmittance T.
+    pub fn with_weight(self, weight: [f64; 2]) -> Self {
+        Water { weight, ..self }
     }
 }
 
@@ -56,7 +64,11 @@ impl Specular for Water {
             t: if met { t } else { f64::INFINITY },
             point: DVec3::new(point.x, point.y, self.surface_z),
             direction: DVec3::new(direction.x * ratio, direction.y * ratio, z),
-            weight: if met & passes { transmittance } else { 0.0 },
+            weight: if met & passes {
+                self.weight[0] + self.weight[1] * transmittance
+            } else {
+                0.0
+            },
         }
     }
 

@@ -13,7 +13,7 @@ use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
-use super::settings::Defect;
+use super::deviation::Deviation;
 
 /// The classes in which a camera path's contribution can end: seen directly, or through the specular surface.
 pub(super) type ClassPair = [PathClass; 2];
@@ -50,25 +50,30 @@ impl CameraPaths {
 
     /// Draws the paths `first ..`; those beyond the first `live` have no vertex.
     #[inline(always)]
-    pub(super) fn draw<L: Light, S: Specular>(
+    pub(super) fn draw<L: Light, S: Specular, D: Deviation>(
         &mut self,
         scene: &Scene<L, S>,
+        defect: &D,
         stream: &Stream,
         first: u64,
         live: usize,
     ) {
         stream.pairs(first, Dimension::Film, &mut self.column, &mut self.row);
+        defect.numbers(Dimension::Film, &mut self.column, &mut self.row);
         let (columns, rows) = scene.camera.size();
         let pixels = scene.camera.pixels();
         let through = scene.surface.radiance_scale();
         for i in 0..BLOCK {
             let (u, v) = (self.column[i] * columns, self.row[i] * rows);
-            let landing = scene.landing(scene.camera.position, scene.camera.direction(u, v));
-            self.column[i] = u;
-            self.row[i] = v;
+            let direction = scene.camera.direction(u, v);
+            let landing = scene.landing(scene.camera.position, direction);
+            let (column, row, scale) = defect.placed(&scene.camera, u, v);
+            self.column[i] = column;
+            self.row[i] = row;
             self.x[i] = landing.x;
             self.y[i] = landing.y;
             self.weight[i] = landing.weight * pixels * if landing.via { through } else { 1.0 };
+            self.weight[i] *= scale * defect.at_sensor(direction);
             self.via[i] = if landing.via { 1.0 } else { 0.0 };
         }
         self.weight[live..].fill(0.0);
@@ -76,10 +81,10 @@ impl CameraPaths {
 
     /// Contributions of the light that reaches the vertices directly, into `value`.
     #[inline(always)]
-    pub(super) fn next_event<L: Light, S: Specular>(
+    pub(super) fn next_event<L: Light, S: Specular, D: Deviation>(
         &self,
         scene: &Scene<L, S>,
-        defect: &Defect,
+        defect: &D,
         value: &mut Lanes,
     ) {
         let scale = DIRECT.map(|class| scene.floor.bsdf * defect.class_scale(class));
@@ -87,14 +92,15 @@ impl CameraPaths {
             let vertex = DVec3::new(self.x[i], self.y[i], 0.0);
             let (towards, t_end) = scene.light.towards(vertex);
             let cosine = towards.z / f64::sqrt(towards.dot(towards));
-            let irradiance = scene.light.normal_irradiance(towards) * cosine;
+            let irradiance =
+                defect.falloff(scene.light.normal_irradiance(towards), towards) * cosine;
             let scale = if self.via[i] > 0.5 {
                 scale[1]
             } else {
                 scale[0]
             };
-            let radiance = scale * irradiance * defect.beside_cosine(cosine);
-            let free = !scene.surface.blocks(vertex, towards, t_end);
+            let radiance = scale * irradiance * defect.beside_own_cosine(cosine);
+            let free = defect.lit(!scene.surface.blocks(vertex, towards, t_end));
             *value = if free { self.weight[i] * radiance } else { 0.0 };
         }
     }

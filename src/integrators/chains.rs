@@ -16,7 +16,8 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::Prepared;
 use super::camera_paths::add;
-use super::settings::Defect;
+use super::defect::Defect;
+use super::deviation::Deviation;
 
 /// Light tracing along chains.
 pub(super) struct LightChains<L: Light, S> {
@@ -204,7 +205,7 @@ impl<L: Light, S: Chains> DirectLight<L, S> {
             return 0.0;
         }
         let irradiance = light.normal_irradiance(towards) * cosine;
-        floor.bsdf * irradiance * self.defect.beside_cosine(cosine)
+        floor.bsdf * irradiance * self.defect.beside_own_cosine(cosine)
     }
 }
 

@@ -15,7 +15,8 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::Prepared;
 use super::camera_paths::add;
-use super::settings::Defect;
+use super::defect::Defect;
+use super::deviation::Deviation;
 
 /// The direction at each vertex but the last.
 const DIRECTIONS: [Dimension; 3] = [
@@ -63,7 +64,7 @@ impl CameraWalks {
         let cosine = towards.dot(normal) / f64::sqrt(towards.dot(towards));
         let irradiance = self.scene.light.normal_irradiance(towards) * cosine;
         let bsdf = self.scene.albedo / core::f64::consts::PI;
-        bsdf * irradiance * self.defect.beside_cosine(cosine)
+        bsdf * irradiance * self.defect.beside_own_cosine(cosine)
     }
 }
 

@@ -8,9 +8,9 @@ use core::f64::consts::{PI, TAU};
 use core::fmt;
 use core::str::FromStr;
 
-use libm::{asin, cos, exp, sin, sqrt};
+use libm::{asin, cos, exp, sin, sqrt, tan};
 
-use super::settings::Fault;
+use super::fault::Fault;
 
 /// The shape of a mollifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,9 +97,16 @@ impl AngleKernel {
                     Kernel::Epanechnikov | Kernel::VonMisesFisher => 2.0 / (PI * square),
                 };
             }
+            Some(Fault::KernelNormalizedByTangent) => {
+                norm *= 4.0 * half * half / (tan(alpha) * tan(alpha));
+            }
             Some(Fault::RadiusForRadiusSquared) => norm *= alpha,
             _ => {}
         }
+        let half = match fault {
+            Some(Fault::FullAngleForHalf) => sin(0.25 * alpha),
+            _ => half,
+        };
         let support = match kernel {
             Kernel::VonMisesFisher => f64::INFINITY,
             _ => 4.0 * half * half,

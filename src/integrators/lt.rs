@@ -22,10 +22,12 @@ use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{add, select};
 use super::chains::LightChains;
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::furnace::LightWalks;
 use super::plan::{not_sampled, plan_of, walk_plan};
-use super::settings::{Defect, Settings};
-use super::{ClassPlan, Integrator, Plan, Prepared, Technique, Treatment};
+use super::settings::Settings;
+use super::{ClassPlan, Fault, Integrator, Plan, Prepared, Technique, Treatment};
 
 /// Light tracing.
 pub struct Lt {
@@ -79,36 +81,46 @@ impl Integrator for Lt {
     }
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
-        let defect = Defect::new(self.settings.fault);
-        visit(entry, defect.overrides(), Prepare { defect })
+        let fault = self.settings.fault;
+        visit(entry, Defect::new(fault).overrides(), Prepare { fault })
     }
 }
 
 /// What is prepared once the kind of the scene is known.
 struct Prepare {
-    defect: Defect,
+    fault: Option<Fault>,
 }
 
 impl Visitor for Prepare {
     type Output = Box<dyn Prepared>;
 
     fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
-        prepared(scene, self.defect)
+        match self.fault {
+            None => prepared(scene, Sound),
+            fault => prepared(scene, Defect::new(fault)),
+        }
     }
 
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
-        Box::new(LightChains::new(scene, self.defect))
+        Box::new(LightChains::new(scene, Defect::new(self.fault)))
     }
 
     fn furnace(self, scene: Furnace) -> Box<dyn Prepared> {
-        Box::new(LightWalks::new(scene, self.defect))
+        Box::new(LightWalks::new(scene, Defect::new(self.fault)))
     }
 }
 
-fn prepared<L: Light, S: Specular>(scene: Scene<L, S>, defect: Defect) -> Box<dyn Prepared> {
+fn prepared<L: Light, S: Specular, D: Deviation>(
+    scene: Scene<L, S>,
+    defect: D,
+) -> Box<dyn Prepared> {
     let mut targets = scene.floor.hull();
     targets.extend(scene.surface.hull());
-    let emitter = scene.light.aimed(&targets);
+    let emitter = if defect.unaimed() {
+        scene.light.unaimed(&targets)
+    } else {
+        scene.light.aimed(&targets)
+    };
     Box::new(PreparedLt {
         scene,
         emitter,
@@ -116,20 +128,22 @@ fn prepared<L: Light, S: Specular>(scene: Scene<L, S>, defect: Defect) -> Box<dy
     })
 }
 
-struct PreparedLt<L: Light, S> {
+struct PreparedLt<L: Light, S, D> {
     scene: Scene<L, S>,
     emitter: L::Emitter,
-    defect: Defect,
+    defect: D,
 }
 
-impl<L: Light, S: Specular> Prepared for PreparedLt<L, S> {
+impl<L: Light, S: Specular, D: Deviation> Prepared for PreparedLt<L, S, D> {
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, _bandwidth: f64, film: &mut Film) {
         film.paths += paths;
         if S::SEPARATES {
             // Every line from the floor to the pinhole is interrupted: there is nothing to sample.
             return;
         }
+        let (seed, iteration) = self.defect.address(seed, iteration);
         let stream = Stream::new(seed, iteration);
+        let before = film.nonzero.iter().sum();
         let mut block = Block::new();
         for first in (0..paths).step_by(BLOCK) {
             let live = (paths - first).min(BLOCK as u64) as usize;
@@ -144,6 +158,7 @@ impl<L: Light, S: Specular> Prepared for PreparedLt<L, S> {
                 film,
             );
         }
+        self.defect.finish(paths, before, film);
     }
 }
 
@@ -166,10 +181,10 @@ impl Block {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn trace<L: Light, S: Specular>(
+fn trace<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
     emitter: &L::Emitter,
-    defect: &Defect,
+    defect: &D,
     stream: &Stream,
     first: u64,
     live: usize,
@@ -178,17 +193,21 @@ fn trace<L: Light, S: Specular>(
 ) {
     let Block { u, v, value, via } = block;
     stream.pairs(first, Dimension::Emission, u, v);
-    let scale = CLASSES.map(|class| emitter.flux() * scene.floor.bsdf * defect.class_scale(class));
+    defect.numbers(Dimension::Emission, u, v);
+    let flux = defect.flux(emitter.flux());
+    let scale = CLASSES.map(|class| flux * scene.floor.bsdf * defect.class_scale(class));
     for i in 0..BLOCK {
         let (origin, direction) = emitter.ray(u[i], v[i]);
         let landing = scene.landing(origin, direction);
-        let vertex = DVec3::new(landing.x, landing.y, 0.0);
+        let vertex = defect.landed(DVec3::new(landing.x, landing.y, 0.0));
         let (column, row, density) = scene.camera.project_floor(vertex);
-        let free = !scene
-            .surface
-            .blocks(vertex, scene.camera.position - vertex, 1.0);
+        let (column, row, kept) = defect.placed(&scene.camera, column, row);
+        let towards = scene.camera.position - vertex;
+        let free = defect.seen(!scene.surface.blocks(vertex, towards, 1.0));
         let scale = if landing.via { scale[1] } else { scale[0] };
         let radiance = scale * landing.weight * defect.beside_cosine(landing.cosine);
+        let radiance = radiance * kept * defect.at_connection(&scene.camera, vertex);
+        let radiance = radiance * defect.roulette(u[i]);
         let counts = free & (landing.weight > 0.0) & (density > 0.0);
         u[i] = column;
         v[i] = row;

@@ -7,6 +7,9 @@
 pub mod accumulate;
 mod camera_paths;
 mod chains;
+mod defect;
+mod deviation;
+mod fault;
 mod furnace;
 pub mod kernel;
 mod lt;
@@ -20,6 +23,7 @@ mod pt_reg;
 pub mod schedule;
 mod settings;
 
+pub use fault::Fault;
 pub use kernel::Kernel;
 pub use lt::Lt;
 pub use pm::Pm;
@@ -27,7 +31,7 @@ pub use ppm::Ppm;
 pub use pt::Pt;
 pub use pt_reg::PtReg;
 pub use schedule::Schedule;
-pub use settings::{Fault, Settings};
+pub use settings::Settings;
 
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;

@@ -123,9 +123,9 @@ impl PhotonGrid {
     }
 
     /// Sum over the photons of flux × (1 + slope d²) for d² < r²: the irradiance, divided by the kernel's value at its
-    /// centre.
+    /// centre. `reach` is how many cells below and above the point's own are looked at: one.
     #[inline(always)]
-    pub(super) fn gather(&self, x: f64, y: f64, kernel: &RadiusKernel) -> f64 {
+    pub(super) fn gather(&self, x: f64, y: f64, kernel: &RadiusKernel, reach: [i64; 2]) -> f64 {
         // Converted to whole numbers, which saturate, so that a point far away is simply outside.
         let column = f64::floor((x - self.low[0]) * self.inverse_cell) as i64;
         let row = f64::floor((y - self.low[1]) * self.inverse_cell) as i64;
@@ -134,10 +134,14 @@ impl PhotonGrid {
             return 0.0;
         }
         let clamp = |v: i64, end: i64| v.clamp(0, end - 1) as usize;
-        let (first, last) = (clamp(column - 1, columns), clamp(column + 1, columns));
+        let [below, above] = reach;
+        let (first, last) = (
+            clamp(column - below, columns),
+            clamp(column + above, columns),
+        );
         let square = kernel.radius * kernel.radius;
         let mut sums = [0.0; LANES];
-        for row in clamp(row - 1, rows)..=clamp(row + 1, rows) {
+        for row in clamp(row - below, rows)..=clamp(row + above, rows) {
             let start = self.starts[row * self.columns + first] as usize;
             let end = self.starts[row * self.columns + last + 1] as usize;
             let (px, py) = (&self.sorted.x[start..end], &self.sorted.y[start..end]);
@@ -216,7 +220,7 @@ mod tests {
                             }
                         })
                         .sum();
-                    let found = grid.gather(x, y, &kernel);
+                    let found = grid.gather(x, y, &kernel, [1, 1]);
                     assert!(
                         (found - expected).abs() <= 1e-12 * (1.0 + expected),
                         "{n} {radius}"
@@ -235,9 +239,9 @@ mod tests {
         let mut grid = PhotonGrid::default();
         grid.build(&photons, 0.1);
         let kernel = RadiusKernel::new(Kernel::Disc, 0.1, None);
-        assert_eq!(grid.gather(1.0, 2.05, &kernel), 20.0);
+        assert_eq!(grid.gather(1.0, 2.05, &kernel, [1, 1]), 20.0);
         for far in [1e300, -1e300, f64::INFINITY, f64::NAN] {
-            assert_eq!(grid.gather(far, 2.0, &kernel), 0.0);
+            assert_eq!(grid.gather(far, 2.0, &kernel, [1, 1]), 0.0);
         }
     }
 }

@@ -21,10 +21,12 @@ use crate::geometry::specular::Specular;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::kernel::{Kernel, RadiusKernel};
 use super::photon_grid::{PhotonGrid, Photons};
 use super::plan::{next_event_plan, plan_of};
-use super::settings::{Defect, Settings};
+use super::settings::Settings;
 use super::{ClassPlan, Plan, Prepared, Technique, Treatment, Unsupported};
 
 /// Photons that a camera path meets in the nine cells around its vertex, about.
@@ -68,6 +70,17 @@ fn prepared<L: Light, S: Specular>(
     settings: &Settings,
     defect: Defect,
 ) -> Box<dyn Prepared> {
+    match settings.fault {
+        None => deviating(scene, settings, Sound),
+        Some(_) => deviating(scene, settings, defect),
+    }
+}
+
+fn deviating<L: Light, S: Specular, D: Deviation>(
+    scene: Scene<L, S>,
+    settings: &Settings,
+    defect: D,
+) -> Box<dyn Prepared> {
     let emitter = scene.light.unaimed(&scene.surface.hull());
     let mut mapping = PhotonMapping {
         scene,
@@ -82,11 +95,11 @@ fn prepared<L: Light, S: Specular>(
     Box::new(mapping)
 }
 
-struct PhotonMapping<L: Light, S> {
+struct PhotonMapping<L: Light, S, D> {
     scene: Scene<L, S>,
     emitter: L::Emitter,
     settings: Settings,
-    defect: Defect,
+    defect: D,
     /// Photons that reach the floor per photon traced and square metre of their bounding box, as a pilot found it.
     density: f64,
 }
@@ -121,7 +134,7 @@ fn blocks(start: u64, end: u64) -> impl Iterator<Item = (u64, usize)> {
         .map(move |first| (first, (end - first).min(BLOCK as u64) as usize))
 }
 
-impl<L: Light, S: Specular> PhotonMapping<L, S> {
+impl<L: Light, S: Specular, D: Deviation> PhotonMapping<L, S, D> {
     /// Traces photons of a fixed stream, so that the size of a map depends on the scene and the radius alone, not on the
     /// photons that it will hold (which would bias it).
     fn pilot_density(&self) -> f64 {
@@ -153,9 +166,13 @@ impl<L: Light, S: Specular> PhotonMapping<L, S> {
     }
 }
 
-impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
+impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
         film.paths += paths;
+        let before = film.nonzero.iter().sum();
+        self.defect.begin(iteration, film);
+        let bandwidth = self.defect.bandwidth(iteration, bandwidth);
+        let (seed, iteration) = self.defect.address(seed, iteration);
         let stream = Stream::new(seed, iteration);
         let kernel = RadiusKernel::new(kernel_of(&self.settings), bandwidth, self.settings.fault);
         let mut work = Work::new();
@@ -175,9 +192,11 @@ impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
                         &mut work,
                     );
                 }
-                work.grid.build(&work.photons, kernel.radius);
+                work.grid
+                    .build(&work.photons, kernel.radius * self.defect.cell());
             }
-            let norm = kernel.norm * self.emitter.flux() / (end - start) as f64;
+            let divisor = self.defect.divisor(end - start, work.photons.x.len());
+            let norm = kernel.norm * self.defect.flux(self.emitter.flux()) / divisor;
             for (first, live) in blocks(start, end) {
                 trace(
                     &self.scene,
@@ -192,14 +211,15 @@ impl<L: Light, S: Specular> Prepared for PhotonMapping<L, S> {
                 );
             }
         }
+        self.defect.finish(paths, before, film);
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn emit<L: Light, S: Specular>(
+fn emit<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
     emitter: &L::Emitter,
-    defect: &Defect,
+    defect: &D,
     stream: &Stream,
     first: u64,
     live: usize,
@@ -213,13 +233,14 @@ fn emit<L: Light, S: Specular>(
         ..
     } = work;
     stream.pairs(first, Dimension::Emission, u, v);
+    defect.numbers(Dimension::Emission, u, v);
     for i in 0..BLOCK {
         let (origin, direction) = emitter.ray(u[i], v[i]);
         let landing = scene.landing(origin, direction);
-        let weight = landing.weight * defect.beside_cosine(landing.cosine);
+        let weight = landing.weight * defect.beside_cosine(landing.cosine) * defect.roulette(u[i]);
         u[i] = landing.x;
         v[i] = landing.y;
-        value[i] = if landing.via & (landing.weight > 0.0) {
+        value[i] = if defect.stored(landing.via) & (landing.weight > 0.0) {
             weight
         } else {
             0.0
@@ -235,9 +256,9 @@ fn emit<L: Light, S: Specular>(
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn trace<L: Light, S: Specular>(
+fn trace<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
-    defect: &Defect,
+    defect: &D,
     stream: &Stream,
     kernel: &RadiusKernel,
     norm: f64,
@@ -249,7 +270,7 @@ fn trace<L: Light, S: Specular>(
     let Work {
         grid, paths, value, ..
     } = work;
-    paths.draw(scene, stream, first, live);
+    paths.draw(scene, defect, stream, first, live);
     if !S::SEPARATES {
         paths.next_event(scene, defect, value);
         paths.splat(film, DIRECT, value);
@@ -266,7 +287,9 @@ fn trace<L: Light, S: Specular>(
             } else {
                 scale[0]
             };
-            value[i] = paths.weight[i] * scale * grid.gather(paths.x[i], paths.y[i], kernel);
+            value[i] = paths.weight[i]
+                * scale
+                * grid.gather(paths.x[i], paths.y[i], kernel, defect.reach());
         }
         paths.splat(film, CAUSTIC, value);
     }

@@ -17,10 +17,12 @@ use crate::stream::{BLOCK, Lanes, Stream, zeros};
 
 use super::camera_paths::{CameraPaths, DIRECT};
 use super::chains::DirectLight;
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::furnace::CameraWalks;
 use super::plan::{next_event_plan, not_sampled, plan_of, walk_plan};
-use super::settings::{Defect, Settings};
-use super::{Integrator, Plan, Prepared, Technique};
+use super::settings::Settings;
+use super::{Fault, Integrator, Plan, Prepared, Technique};
 
 /// Path tracing with next event estimation.
 pub struct Pt {
@@ -58,48 +60,56 @@ impl Integrator for Pt {
     }
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
-        let defect = Defect::new(self.settings.fault);
-        visit(entry, defect.overrides(), Prepare { defect })
+        let fault = self.settings.fault;
+        visit(entry, Defect::new(fault).overrides(), Prepare { fault })
     }
 }
 
 /// What is prepared once the kind of the scene is known.
 struct Prepare {
-    defect: Defect,
+    fault: Option<Fault>,
 }
 
 impl Visitor for Prepare {
     type Output = Box<dyn Prepared>;
 
     fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
-        Box::new(PreparedPt {
-            scene,
-            defect: self.defect,
-        })
+        match self.fault {
+            None => Box::new(PreparedPt {
+                scene,
+                defect: Sound,
+            }),
+            fault => Box::new(PreparedPt {
+                scene,
+                defect: Defect::new(fault),
+            }),
+        }
     }
 
     fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
-        Box::new(DirectLight::new(scene, self.defect))
+        Box::new(DirectLight::new(scene, Defect::new(self.fault)))
     }
 
     fn furnace(self, scene: Furnace) -> Box<dyn Prepared> {
-        Box::new(CameraWalks::new(scene, self.defect))
+        Box::new(CameraWalks::new(scene, Defect::new(self.fault)))
     }
 }
 
-struct PreparedPt<L, S> {
+struct PreparedPt<L, S, D> {
     scene: Scene<L, S>,
-    defect: Defect,
+    defect: D,
 }
 
-impl<L: Light, S: Specular> Prepared for PreparedPt<L, S> {
+impl<L: Light, S: Specular, D: Deviation> Prepared for PreparedPt<L, S, D> {
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, _bandwidth: f64, film: &mut Film) {
         film.paths += paths;
         if S::SEPARATES {
             // Every line from the floor to the light or to the eye is interrupted: there is nothing to sample.
             return;
         }
+        let (seed, iteration) = self.defect.address(seed, iteration);
         let stream = Stream::new(seed, iteration);
+        let before = film.nonzero.iter().sum();
         let mut block = (CameraPaths::new(), zeros());
         for first in (0..paths).step_by(BLOCK) {
             let live = (paths - first).min(BLOCK as u64) as usize;
@@ -113,13 +123,14 @@ impl<L: Light, S: Specular> Prepared for PreparedPt<L, S> {
                 film,
             );
         }
+        self.defect.finish(paths, before, film);
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn trace<L: Light, S: Specular>(
+fn trace<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
-    defect: &Defect,
+    defect: &D,
     stream: &Stream,
     first: u64,
     live: usize,
@@ -127,7 +138,7 @@ fn trace<L: Light, S: Specular>(
     film: &mut Film,
 ) {
     let (paths, value) = block;
-    paths.draw(scene, stream, first, live);
+    paths.draw(scene, defect, stream, first, live);
     paths.next_event(scene, defect, value);
     paths.splat(film, DIRECT, value);
 }

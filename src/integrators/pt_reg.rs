@@ -21,9 +21,11 @@ use crate::geometry::turn::sin_cos_of_turns;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
+use super::defect::Defect;
+use super::deviation::{Deviation, Sound};
 use super::kernel::{AngleKernel, Kernel};
 use super::plan::{next_event_plan, plan_of};
-use super::settings::{Defect, Settings};
+use super::settings::Settings;
 use super::{
     ClassPlan, Integrator, Plan, Prepared, Technique, Treatment, Unsupported, regularizes,
 };
@@ -76,12 +78,20 @@ impl Integrator for PtReg {
         let (kernel, settings) = (self.kernel, self.settings);
         macro_rules! prepared {
             ($scene:expr) => {
-                Box::new(PreparedPtReg {
-                    scene: $scene,
-                    kernel,
-                    settings,
-                    defect,
-                })
+                match settings.fault {
+                    None => Box::new(PreparedPtReg {
+                        scene: $scene,
+                        kernel,
+                        settings,
+                        defect: Sound,
+                    }),
+                    Some(_) => Box::new(PreparedPtReg {
+                        scene: $scene,
+                        kernel,
+                        settings,
+                        defect,
+                    }),
+                }
             };
         }
         match Compiled::new(entry, defect.overrides()) {
@@ -94,17 +104,20 @@ impl Integrator for PtReg {
     }
 }
 
-struct PreparedPtReg<L, S> {
+struct PreparedPtReg<L, S, D> {
     scene: Scene<L, S>,
     kernel: Kernel,
     settings: Settings,
-    defect: Defect,
+    defect: D,
 }
 
-impl<L: Light, S: Specular> Prepared for PreparedPtReg<L, S> {
+impl<L: Light, S: Specular, D: Deviation> Prepared for PreparedPtReg<L, S, D> {
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
         film.paths += paths;
+        let (seed, iteration) = self.defect.address(seed, iteration);
         let stream = Stream::new(seed, iteration);
+        let before = film.nonzero.iter().sum();
+        let bandwidth = self.defect.bandwidth(iteration, bandwidth);
         let kernel = AngleKernel::new(self.kernel, bandwidth, self.settings.fault);
         let mut block = Block::new();
         for first in (0..paths).step_by(BLOCK) {
@@ -120,6 +133,7 @@ impl<L: Light, S: Specular> Prepared for PreparedPtReg<L, S> {
                 film,
             );
         }
+        self.defect.finish(paths, before, film);
     }
 }
 
@@ -144,9 +158,9 @@ impl Block {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn trace<L: Light, S: Specular>(
+fn trace<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
-    defect: &Defect,
+    defect: &D,
     kernel: &AngleKernel,
     stream: &Stream,
     first: u64,
@@ -161,24 +175,25 @@ fn trace<L: Light, S: Specular>(
         u,
         v,
     } = block;
-    paths.draw(scene, stream, first, live);
+    paths.draw(scene, defect, stream, first, live);
     if !S::SEPARATES {
         paths.next_event(scene, defect, value);
         paths.splat(film, DIRECT, value);
     }
     if S::EXISTS {
         stream.pairs(first, Dimension::Direction, u, v);
+        defect.numbers(Dimension::Direction, u, v);
         connect(scene, defect, paths, u, v, value, squared_chord);
-        finish(kernel, value, squared_chord);
+        finish(scene.camera.pixels(), defect, kernel, value, squared_chord);
         paths.splat(film, CAUSTIC, value);
     }
 }
 
 /// Everything but the kernel: what it multiplies, and where it is evaluated.
 #[inline(always)]
-fn connect<L: Light, S: Specular>(
+fn connect<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
-    defect: &Defect,
+    defect: &D,
     paths: &CameraPaths,
     u: &Lanes,
     v: &Lanes,
@@ -190,11 +205,10 @@ fn connect<L: Light, S: Specular>(
     let scale = CAUSTIC.map(|class| common * defect.class_scale(class));
     for i in 0..BLOCK {
         let (sine, cosine) = sin_cos_of_turns(u[i]);
-        let (r, z) = (f64::sqrt(v[i]), f64::sqrt(1.0 - v[i]));
+        let (r, z) = defect.scattered(v[i]);
         let origin = DVec3::new(paths.x[i], paths.y[i], 0.0);
-        let meeting = scene
-            .surface
-            .meet(origin, DVec3::new(r * cosine, r * sine, z));
+        let direction = DVec3::new(r * cosine, r * sine, z);
+        let meeting = scene.surface.meet(origin, direction);
         let (towards, _) = scene.light.towards(meeting.point);
         let difference = meeting.direction - unit(towards);
         let scale = if paths.via[i] > 0.5 {
@@ -202,11 +216,11 @@ fn connect<L: Light, S: Specular>(
         } else {
             scale[0]
         };
-        let irradiance = scene.light.normal_irradiance(towards);
+        let irradiance = defect.falloff(scene.light.normal_irradiance(towards), towards);
         let sample = scale * paths.weight[i] * meeting.weight * irradiance;
         squared_chord[i] = difference.dot(difference);
         value[i] = if meeting.weight > 0.0 {
-            sample * defect.beside_cosine(z)
+            sample * defect.beside_own_cosine(z) * defect.at_specular(direction, meeting.direction)
         } else {
             0.0
         };
@@ -215,7 +229,13 @@ fn connect<L: Light, S: Specular>(
 
 /// Multiplies by the kernel, where it is not zero.
 #[inline(always)]
-fn finish(kernel: &AngleKernel, value: &mut Lanes, squared_chord: &Lanes) {
+fn finish<D: Deviation>(
+    pixels: f64,
+    defect: &D,
+    kernel: &AngleKernel,
+    value: &mut Lanes,
+    squared_chord: &Lanes,
+) {
     let mut list = [0_u16; BLOCK];
     let n = select(&mut list, |i| {
         (value[i] > 0.0) & (squared_chord[i] < kernel.support)
@@ -223,6 +243,6 @@ fn finish(kernel: &AngleKernel, value: &mut Lanes, squared_chord: &Lanes) {
     let sample = core::mem::replace(value, zeros());
     for &i in &list[..n] {
         let i = usize::from(i);
-        value[i] = sample[i] * kernel.density(squared_chord[i]);
+        value[i] = defect.sample(sample[i] * kernel.density(squared_chord[i]), pixels);
     }
 }

@@ -100,7 +100,7 @@ impl Schedule {
 }
 
 /// r²/r₁² in an iteration counted from 0: the product of (i + a)/(i + 1), i = 1 … iteration.
-fn progressive_ratio(iteration: u32, a: f64) -> f64 {
+pub(super) fn progressive_ratio(iteration: u32, a: f64) -> f64 {
     const PRODUCT: u32 = 4096;
     let product = (1..=iteration.min(PRODUCT))
         .map(f64::from)

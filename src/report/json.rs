@@ -65,6 +65,7 @@ fn verdict(v: &Verdict) -> Value {
         "seed": v.seed,
         "seconds": v.seconds,
         "reason": f.reason,
+        "looks_like": v.looks_like,
         "command": v.command,
     })
 }

@@ -111,6 +111,7 @@ fn details(v: &Verdict) -> Vec<String> {
                 .to_owned(),
         );
     }
+    lines.extend(v.looks_like.clone());
     if let Some(paths) = v.paths_needed {
         lines.push(format!("about {:.1e} paths would decide", paths as f64));
     }

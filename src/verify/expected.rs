@@ -114,6 +114,11 @@ impl Truths {
         Ok(result)
     }
 
+    /// The exact image of a scene, if it has been asked for.
+    pub fn image(&self, scene: usize) -> Option<&TruthImage> {
+        self.exact.get(&scene)
+    }
+
     /// Expectations of the regularized classes.
     fn finite(&mut self, entry: &Entry, key: Finite) -> Result<&ClassMoments, Error> {
         let position = match self.finite.iter().position(|(k, _)| *k == key) {

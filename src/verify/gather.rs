@@ -74,6 +74,32 @@ pub fn gather(
     expected: &[Option<Expected>],
     demand: Demand,
 ) -> Evidence {
+    let end = End::AllDecided;
+    gather_until(
+        end, prepare, canvas, regions, shape, seeds, expected, demand,
+    )
+}
+
+/// When a test ends, apart from its budget.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// All checks are decided.
+    AllDecided,
+    /// A check says different, or all are decided.
+    FirstDifference,
+}
+
+/// The same, up to an end of choice.
+pub fn gather_until(
+    end: End,
+    prepare: impl FnOnce() -> Box<dyn Prepared>,
+    canvas: Canvas,
+    regions: &Regions,
+    shape: Shape,
+    seeds: Seeds,
+    expected: &[Option<Expected>],
+    demand: Demand,
+) -> Evidence {
     let mut subjects = subjects(expected);
     let mut layers: Vec<Layer> = vec![Layer::default(); expected.len()];
     if subjects.is_empty() {
@@ -97,22 +123,23 @@ pub fn gather(
     let (mut drawn, mut taken) = (0, 0);
     for look in looks(u64::from(size.replicates), u64::from(size.most)) {
         while u64::from(drawn) < look.replicates {
-            let end = (drawn + AT_A_TIME).min(look.replicates as u32);
+            let stop = (drawn + AT_A_TIME).min(look.replicates as u32);
             let shape = &size.shape;
-            for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..end) {
+            for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..stop) {
                 subjects.iter_mut().for_each(|s| s.push(&r));
                 layers
                     .iter_mut()
                     .enumerate()
                     .for_each(|(l, layer)| layer.push(&r, l));
             }
-            drawn = end;
+            drawn = stop;
         }
         taken += 1;
         for subject in &mut subjects {
             subject.decide(regions, demand, look, &size);
         }
-        if subjects.iter().all(Subject::is_settled) {
+        let suffices = end == End::FirstDifference && subjects.iter().any(Subject::is_different);
+        if suffices || subjects.iter().all(Subject::is_settled) {
             break;
         }
     }
@@ -220,6 +247,12 @@ impl Subject {
         self.finding
             .as_ref()
             .is_some_and(|f| f.state != State::Undecided)
+    }
+
+    fn is_different(&self) -> bool {
+        self.finding
+            .as_ref()
+            .is_some_and(|f| f.state == State::Different)
     }
 
     /// Whether it is decided, or more replicates would not help.

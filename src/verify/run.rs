@@ -99,6 +99,7 @@ pub fn run(
         not_run.extend(metamorphic::left_out(request, &pairs));
     }
     settle(&mut verdicts, request.level, checks);
+    crate::diagnosis::annotate(request, &mut verdicts, truths)?;
     Ok(Outcome {
         verdicts,
         not_run,
@@ -280,6 +281,7 @@ impl Job<'_> {
                 bandwidth: regularized.then_some(request.bandwidth),
                 tail: judged.tail,
                 excluded: self.excluded,
+                looks_like: None,
                 replicates,
                 looks: evidence.looks,
                 paths: u64::from(replicates) * per_replicate,
@@ -297,7 +299,7 @@ fn is_regularized(treatment: Treatment) -> bool {
 }
 
 /// The replicates that pilots start with.
-pub(super) fn first_shape(
+pub(crate) fn first_shape(
     integrator: &dyn Integrator,
     plan: &Plan,
     bandwidth: f64,

@@ -42,6 +42,8 @@ pub struct Verdict {
     pub excluded: Option<Excluded>,
     /// Tail index of the replicates' largest pixels, where there are enough.
     pub tail: Option<TailIndex>,
+    /// What a difference looks like, where it looks like something.
+    pub looks_like: Option<String>,
     /// Independent repetitions.
     pub replicates: u32,
     /// How often the growing sample was judged.
