@@ -205,7 +205,7 @@ fn bad_usage_is_exit_code_2_and_says_what_is_allowed() {
         (&["verify", "--margin", "0"], "1e-4 to 5e-1"),
         (&["verify", "--margin", "NaN"], "1e-4 to 5e-1"),
         (&["verify", "--level", "1"], "1e-15 to 1e-1"),
-        (&["verify", "--bandwidth", "-0.1"], "1e-7 to 1e6"),
+        (&["verify", "--bandwidth", "-0.1"], "1e-9 to 1e6"),
         (&["verify", "--kernel", "box"], "epanechnikov"),
         (
             &["verify", "--integrator", "pt-reg", "--kernel", "disc"],

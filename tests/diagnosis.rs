@@ -80,7 +80,8 @@ fn each_pattern_is_told_from_the_others() {
             truth[i]
         }
     });
-    assert!(matches!(found(&lost), Some(Pattern::Frame(_))));
+    let at_frame = found(&lost);
+    assert!(matches!(at_frame, Some(Pattern::Frame(_))), "{at_frame:?}");
     let clamped = of(&|i| truth[i].min(3.0));
     assert!(matches!(found(&clamped), Some(Pattern::Bright(f)) if f < 0.8));
 }

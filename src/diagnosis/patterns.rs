@@ -178,10 +178,16 @@ impl<'a> Residual<'a> {
             Pattern::Shift(..) => EXPLAINED_BY_SHIFT,
             _ => EXPLAINED,
         };
+        let place = self.places();
+        // A column that is lost looks like an image moved by one.
+        let lost = |p: &Fit| matches!(p.pattern, Pattern::Frame(_)) && p.explained > explained;
+        if matches!(pattern, Pattern::Shift(..)) && place.as_ref().is_some_and(lost) {
+            return place;
+        }
         if explained >= least {
             return Some(Fit { pattern, explained });
         }
-        self.places()
+        place
     }
 
     /// Factors that are powers of something.

@@ -97,8 +97,7 @@ pub(super) fn left_out(request: &Request, pairs: &[Pair]) -> Vec<NotRun> {
         .map(|p| NotRun {
             scene: request.scenes[pairs[p].scene].entry.name.clone(),
             integrator: request.integrators[pairs[p].integrator].name().to_owned(),
-            reason: "changed scenes (scaled, moved, brighter, finer, cropped): with --variations, and from standard on"
-                .to_owned(),
+            reason: "changed scenes: with --variations, or at standard".to_owned(),
         })
         .collect()
 }
