@@ -109,8 +109,9 @@ fn looking_often_does_not_raise_false_alarms() {
     assert!((20..170).contains(&wrong), "{wrong}");
 }
 
-/// A bias of exactly the margin is called equivalent with probability at most the level, and close to it where the other side of
-/// the margin is out of sight: 200 of 20000 expected, outside 120 to 290 with probability below 1e-6.
+/// A bias of exactly the margin is called equivalent with probability at most the level, and not far below it where the other side
+/// of the margin is out of sight: at most 200 of 20000 expected, above 290 with probability below 1e-9; what is allowed for
+/// skewness leaves more than 40.
 #[test]
 fn a_bias_of_the_margin_passes_as_often_as_stated() {
     let (margin, level) = (0.02, 0.01);
@@ -122,7 +123,7 @@ fn a_bias_of_the_margin_passes_as_often_as_stated() {
                 equivalence_p(&s, ONE, margin) <= level
             })
             .count();
-        assert!((120..290).contains(&passed), "{passed}");
+        assert!((40..290).contains(&passed), "{passed}");
     }
 }
 

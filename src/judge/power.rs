@@ -78,28 +78,30 @@ pub fn replicates_needed(
     if !(usable > 0.0) || !(variance.is_finite()) {
         return None;
     }
-    let enough = |n: f64| standard_errors_needed(levels, n) * libm::sqrt(variance / n) <= usable;
-    // What is needed falls with the replicates: doubled until they do, then bisected.
-    let mut high = FEWEST_PLANNED as f64;
-    if enough(high) {
-        return Some(FEWEST_PLANNED);
-    }
-    while !enough(high) {
-        high *= 2.0;
-        if high > 1e18 {
-            return None;
+    // What is needed falls, slowly, with the replicates that there are: so the fixed point is between any number and what
+    // that number asks for, and the bracket shrinks fast.
+    let asked = |n: f64| {
+        let errors = standard_errors_needed(levels, n) / usable;
+        libm::ceil(errors * errors * variance).max(FEWEST_PLANNED as f64)
+    };
+    let mut high = asked(FEWEST_PLANNED as f64);
+    let mut low = asked(high);
+    for _ in 0..8 {
+        if high - low <= 1.0 {
+            break;
         }
+        high = high.min(asked(low));
+        low = low.max(asked(high));
     }
-    let mut low = 0.5 * high;
-    while high - low > 1.0 {
+    while high > low {
         let middle = libm::floor(0.5 * (low + high));
-        if enough(middle) {
+        if asked(middle) <= middle {
             high = middle;
         } else {
-            low = middle;
+            low = middle + 1.0;
         }
     }
-    Some(high as u64)
+    (high <= 1e18).then_some(high as u64)
 }
 
 /// What a sample could have decided.
