@@ -11,6 +11,7 @@ mod probe_certify;
 mod rates;
 mod render;
 mod run;
+mod schedule;
 mod stability;
 mod verify;
 
@@ -44,6 +45,7 @@ enum Command {
     Explain(explain::Args),
     Render(render::Args),
     Run(run::Args),
+    Schedule(schedule::Args),
     Golden(golden::Args),
     Stability(stability::Args),
 }
@@ -62,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Schedule(args) => schedule::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Stability(args) => stability::run(&args),
     };
