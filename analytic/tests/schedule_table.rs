@@ -12,7 +12,8 @@ fn table() -> Value {
 }
 
 fn number(value: &Value) -> f64 {
-    value.as_str().unwrap().parse().unwrap()
+    let text = value.as_str().map(str::parse);
+    text.map_or_else(|| value.as_f64().unwrap(), Result::unwrap)
 }
 
 fn rows(value: &Value) -> &[Value] {
@@ -189,7 +190,7 @@ fn a_chain_that_mixes_whatever_the_bandwidth() {
             let s: f64 = name[15..name.len() - 1].parse().unwrap();
             Box::new(move |k| -libm::pow(k, s))
         } else {
-            let s: f64 = -name[11..].parse::<f64>().unwrap();
+            let s: f64 = name[11..].parse().unwrap();
             Box::new(move |k| -s * libm::log(f64::max(k, 1.0)))
         };
         let kept = |n: u64| libm::exp(2.0 * (log_alpha(n as f64) - log_alpha((n - 1) as f64)));

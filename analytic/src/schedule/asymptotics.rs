@@ -215,7 +215,7 @@ impl Range {
         })
     }
 
-    fn reversed(self) -> Self {
+    pub(super) fn reversed(self) -> Self {
         match self.high {
             Some(high) => Self {
                 low: high,

@@ -91,7 +91,19 @@ pub(super) fn power_of(base: &Range, e: Number) -> Result<Range, Reason> {
         return base.map(one);
     }
     if base.low.sign() == Ordering::Less {
-        return because("a power of what may be negative");
+        let whole = e.whole().filter(|k| *k > 0);
+        let Some(k) = whole else {
+            return because("a broken or negative power of what may be negative");
+        };
+        let ends = base.map(one)?;
+        if k % 2 == 1 || base.top().sign() == Ordering::Less {
+            // Odd powers keep the order; even ones of what is negative reverse it.
+            return Ok(if k % 2 == 1 { ends } else { ends.reversed() });
+        }
+        return Ok(Range {
+            low: Expansion::exactly(Growth::constant(Number::ZERO)),
+            high: Some(extreme(&ends.low, ends.top(), Ordering::Greater)?),
+        });
     }
     let raised = base.map(one)?;
     let (low, high) = (raised.low.clone(), raised.top().clone());

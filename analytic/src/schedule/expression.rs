@@ -266,7 +266,7 @@ impl fmt::Display for Expression {
 
 impl fmt::Display for Node {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(number) = self.constant() {
+        if let Some(number) = self.constant().filter(|n| n.is_exact()) {
             let text = number.to_string();
             return match text.contains(['/', '-']) {
                 true => write!(f, "({text})"),
@@ -274,7 +274,7 @@ impl fmt::Display for Node {
             };
         }
         match &self.term {
-            Term::Constant(number) => write!(f, "{number}"),
+            Term::Constant(number) => write!(f, "{}", number.value()),
             Term::Index => f.write_str("n"),
             Term::Negated(inner) => write!(f, "(-{inner})"),
             Term::Binary(operation, left, right) => {

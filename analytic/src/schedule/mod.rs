@@ -25,6 +25,6 @@ pub mod rate;
 pub mod sums;
 mod token;
 
-pub use classify::{Classification, Report, Request, Weights, classify};
+pub use classify::{Classification, FiniteRow, Report, Request, Weights, classify};
 pub use expression::{Expression, ParseError};
 pub use number::Number;

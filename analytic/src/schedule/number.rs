@@ -39,8 +39,8 @@ impl Number {
         } else {
             (n, d)
         };
-        // Beyond 2^53 the quotient of the two f64 would be rounded twice and more.
-        let limit = 1_i128 << 53;
+        // Products of two such numbers fit.
+        let limit = 1_i128 << 62;
         (n.abs() <= limit && d <= limit).then_some(Self {
             value: n as f64 / d as f64,
             exact: Some((n, d)),
@@ -77,6 +77,11 @@ impl Number {
     /// The whole number that this is exactly.
     pub(crate) fn whole(self) -> Option<i128> {
         self.exact.filter(|e| e.1 == 1).map(|e| e.0)
+    }
+
+    /// Whether it is known as a fraction.
+    pub(crate) fn is_exact(self) -> bool {
+        self.exact.is_some()
     }
 
     /// Whether it is exactly 0, or an inexact 0.
@@ -140,11 +145,14 @@ impl Number {
         exact.unwrap_or_else(|| Self::inexact(libm::pow(self.value, o.value)))
     }
 
-    /// Order; `None` where two numbers that are not both exact are too close to tell.
+    /// Order; `None` where two numbers that are not both exact are too close to tell. Two inexact ones with the same bits
+    /// count as the same: they come from the same part of an expression.
     pub fn compare(self, o: Self) -> Option<Ordering> {
         if let Some(((a, b), (c, d))) = self.both(o) {
-            // Both products are below 2^106.
             return Some((a * d).cmp(&(c * b)));
+        }
+        if self.exact.is_none() && o.exact.is_none() && self.value == o.value {
+            return Some(Ordering::Equal);
         }
         let close = 1e-12 * f64::abs(self.value).max(f64::abs(o.value)).max(1e-300);
         if f64::abs(self.value - o.value) <= close {
