@@ -378,10 +378,10 @@ fn called(function: Function, r: &[&Range]) -> Result<Range, Reason> {
 
 /// f^g: a constant exponent, or exp(g ln f).
 fn raise(base: &Range, exponent: &Range) -> Result<Range, Reason> {
-    if let (Some(e), None) = (exponent.low.monomial(), &exponent.high) {
-        if e.shape().is_empty() {
-            return power_of(base, e.coefficient);
-        }
+    if let (Some(e), None) = (exponent.low.monomial(), &exponent.high)
+        && e.shape().is_empty()
+    {
+        return power_of(base, e.coefficient);
     }
     if exponent.low.terms.is_empty() && exponent.high.is_none() {
         return Ok(Range::one(Expansion::exactly(Growth::constant(

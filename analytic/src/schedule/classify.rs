@@ -125,7 +125,8 @@ pub fn classify(schedule: &Expression, request: &Request) -> Result<Report, NotP
     for n in (1..=1024).chain((11..=40).map(|j| 1 << j)) {
         let alpha = schedule.at(n);
         let leaves_range = exponential && (alpha == 0.0 || alpha == f64::INFINITY);
-        if !(alpha > 0.0 && alpha.is_finite()) && !leaves_range {
+        let allowed = leaves_range || (alpha > 0.0 && alpha.is_finite());
+        if !allowed {
             return Err(NotPositive { n, alpha });
         }
     }

@@ -193,14 +193,14 @@ pub(super) fn exponential(f: &Expansion) -> Result<Expansion, Reason> {
 /// The sine or cosine: of what vanishes exactly, otherwise between -1 and 1.
 pub(super) fn absolute_bound(f: &Range, is_sine: bool) -> Result<Range, Reason> {
     let constant = |c| Expansion::exactly(Growth::constant(Number::integer(c)));
-    if let (Some(lead), None) = (f.low.lead(), &f.high) {
-        if lead.trend()? == Ordering::Less {
-            return Ok(Range::one(if is_sine {
-                Expansion::leading(lead.clone())
-            } else {
-                Expansion::leading(Growth::constant(Number::ONE))
-            }));
-        }
+    if let (Some(lead), None) = (f.low.lead(), &f.high)
+        && lead.trend()? == Ordering::Less
+    {
+        return Ok(Range::one(if is_sine {
+            Expansion::leading(lead.clone())
+        } else {
+            Expansion::leading(Growth::constant(Number::ONE))
+        }));
     }
     Ok(Range {
         low: constant(-1),

@@ -105,7 +105,7 @@ fn call(function: Function, arguments: &[Node], n: At) -> f64 {
 
 /// Whether k = bʲ, j ≥ 0, for b ≥ 2.
 pub(super) fn is_power(mut k: u64, b: u64) -> bool {
-    while k > 1 && b > 1 && k % b == 0 {
+    while k > 1 && b > 1 && k.is_multiple_of(b) {
         k /= b;
     }
     k == 1

@@ -24,6 +24,7 @@ pub struct TooClose;
 
 /// How Σ_{k ≤ n} f(k) grows.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "lives for one match only")]
 pub enum SumGrowth {
     /// Like this.
     Like(Growth),

@@ -33,6 +33,7 @@ pub(in super::super) fn classify(
 }
 
 /// How a schedule shrinks from step to step.
+#[expect(clippy::large_enum_variant, reason = "lives for one match only")]
 enum Shrinking {
     /// αₙ₊₁/αₙ → 1; the loss per step falls like this, if it is known.
     Slow(Option<Rate>),

@@ -140,14 +140,12 @@ fn rotate<const N: usize>(a: &mut [[f64; N]; N], p: usize, q: usize) {
     let t = f64::copysign(1.0, theta) / (f64::abs(theta) + f64::sqrt(theta * theta + 1.0));
     let c = 1.0 / f64::sqrt(t * t + 1.0);
     let s = t * c;
-    for k in 0..N {
-        let (x, y) = (a[k][p], a[k][q]);
-        a[k][p] = c * x - s * y;
-        a[k][q] = s * x + c * y;
+    for row in a.iter_mut() {
+        let (x, y) = (row[p], row[q]);
+        row[p] = c * x - s * y;
+        row[q] = s * x + c * y;
     }
-    for k in 0..N {
-        let (x, y) = (a[p][k], a[q][k]);
-        a[p][k] = c * x - s * y;
-        a[q][k] = s * x + c * y;
-    }
+    let (x, y) = (a[p], a[q]);
+    a[p] = core::array::from_fn(|k| c * x[k] - s * y[k]);
+    a[q] = core::array::from_fn(|k| s * x[k] + c * y[k]);
 }
