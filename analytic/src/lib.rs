@@ -20,4 +20,5 @@ pub mod quadrature;
 pub mod roots;
 pub mod scalar;
 pub mod scene;
+pub mod schedule;
 pub mod vector;

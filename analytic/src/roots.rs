@@ -77,7 +77,8 @@ pub struct Sample<S> {
     pub noise: S,
 }
 
-/// As [`bracketed_from`], for a function that knows its rounding: a value within it is followed by one last step.
+/// As [`bracketed_from`], for a function that knows its rounding: a value within it is followed by one last step, if the
+/// slope says that this is a short one.
 ///
 /// Where rounding is all that a value holds, further steps do not shrink, and the bracket would be halved to the last bit.
 ///
@@ -102,9 +103,10 @@ pub fn resolved<S: Scalar>(
             noise,
         } = f(x);
         let newton = x - value / slope;
-        if value.abs() <= noise {
-            let within = (newton - low) * (newton - high) <= S::ZERO;
-            return if within { newton } else { x };
+        // Beside an extremum a value within rounding says little of where the zero is.
+        let settled = noise <= S::from_f64(1e-3) * (slope * (above - below)).abs();
+        if value.abs() <= noise && settled && (newton - below) * (newton - above) <= S::ZERO {
+            return newton;
         }
         if (value < S::ZERO) == rising {
             below = x;

@@ -12,6 +12,7 @@ mod probe_certify;
 mod rates;
 mod render;
 mod run;
+mod schedule;
 mod stability;
 mod verify;
 
@@ -46,6 +47,7 @@ enum Command {
     Render(render::Args),
     Run(run::Args),
     Faults(faults::Args),
+    Schedule(schedule::Args),
     Golden(golden::Args),
     Stability(stability::Args),
 }
@@ -65,6 +67,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Faults(args) => faults::run(&args),
+        Command::Schedule(args) => schedule::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Stability(args) => stability::run(&args),
     };
