@@ -22,14 +22,14 @@ pub struct Args {
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     schedule: String,
     /// The variance of a sample is C alpha^-D: 2 for each mollified interaction in space. A number or a fraction.
-    #[arg(long, value_name = "D")]
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
     dimension: String,
     /// The bias of a sample is c alpha^P: 2 where radiance is smooth, 1 at a kink. A number or a fraction.
     #[arg(
         long,
         value_name = "P",
         default_value = "2",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     bias_order: String,
     /// For a Markov chain whose mixing does not depend on the bandwidth: its distance to a fixed target falls by this
