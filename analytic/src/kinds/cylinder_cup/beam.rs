@@ -67,8 +67,6 @@ struct Quartic<S> {
     y: S,
     cubic: S,
     linear: S,
-    /// Size of the terms that both of these are made of: near a cusp they cancel, their rounding does not.
-    terms: S,
 }
 
 impl<S: Scalar> Quartic<S> {
@@ -87,8 +85,9 @@ impl<S: Scalar> Quartic<S> {
     fn derivative(&self, t: S) -> Sample<S> {
         let (y, b) = (self.y, self.cubic);
         let six = S::from_f64(6.0);
-        let size =
-            S::from_f64(16.0) * y.abs() + self.terms * (S::ONE + S::from_f64(3.0) * t.squared());
+        let size = S::from_f64(16.0) * y.abs()
+            + S::from_f64(3.0) * b.abs() * t.squared()
+            + self.linear.abs();
         Sample {
             value: self.value(t).1,
             slope: (S::TWO * six * y * t + six * b) * t - S::TWO * six * y,
@@ -114,7 +113,8 @@ impl<S: Scalar> Quartic<S> {
     #[inline(always)]
     fn noise(&self, t: S) -> S {
         let t2 = t.squared();
-        let size = self.y.abs() * S::from_f64(8.0) + t.abs() * self.terms * (S::ONE + t2);
+        let size =
+            self.y.abs() * S::from_f64(8.0) + t.abs() * (self.linear.abs() + self.cubic.abs() * t2);
         S::from_f64(4.0) * S::EPSILON * size
     }
 
@@ -189,7 +189,6 @@ impl<S: Scalar> CylinderCup<S> {
                 y,
                 cubic: S::TWO * a + four_x,
                 linear: S::TWO * a - four_x,
-                terms: S::TWO * a + four_x.abs(),
             };
             quartic.for_each_root(|t, touching| {
                 let w = S::ONE / (S::ONE + t.squared());
