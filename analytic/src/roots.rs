@@ -29,41 +29,15 @@ pub fn bracketed_from<S: Scalar>(
     start: S,
     rising: bool,
 ) -> S {
-    let (mut below, mut above) = (low, high);
-    let mut x = start;
-    let mut last = (high - low).abs();
-    // A zero at 0 has no relative accuracy to reach.
-    let floor = S::EPSILON.squared() * last;
-    for _ in 0..128 {
+    let exact = |x: S| {
         let (value, slope) = f(x);
-        if value == S::ZERO {
-            return x;
+        Sample {
+            value,
+            slope,
+            noise: S::ZERO,
         }
-        if (value < S::ZERO) == rising {
-            below = x;
-        } else {
-            above = x;
-        }
-        let newton = x - value / slope;
-        let inside = (newton - below) * (newton - above) < S::ZERO;
-        let step = (newton - x).abs();
-        let next = if inside && step <= S::HALF * last {
-            last = step;
-            newton
-        } else {
-            let middle = S::HALF * (below + above);
-            last = (middle - x).abs();
-            middle
-        };
-        if (next - x).abs() <= S::EPSILON * S::HALF * next.abs() + floor
-            || next == below
-            || next == above
-        {
-            return next;
-        }
-        x = next;
-    }
-    x
+    };
+    resolved(exact, low, high, start, rising)
 }
 
 /// A function at a point, for [`resolved`].
@@ -95,6 +69,7 @@ pub fn resolved<S: Scalar>(
     let (mut below, mut above) = (low, high);
     let mut x = start;
     let mut last = (high - low).abs();
+    // A zero at 0 has no relative accuracy to reach.
     let floor = S::EPSILON.squared() * last;
     for _ in 0..128 {
         let Sample {
@@ -102,6 +77,9 @@ pub fn resolved<S: Scalar>(
             slope,
             noise,
         } = f(x);
+        if value == S::ZERO {
+            return x;
+        }
         let newton = x - value / slope;
         // Beside an extremum a value within rounding says little of where the zero is.
         let settled = noise <= S::from_f64(1e-3) * (slope * (above - below)).abs();
