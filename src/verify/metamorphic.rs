@@ -16,7 +16,7 @@ use super::run::{Job, Request, first_shape};
 use super::suite::Pair;
 use super::verdicts::{NotRun, Verdict};
 use crate::error::Error;
-use crate::integrators::{ClassPlan, Integrator, NO_BANDWIDTH, Treatment};
+use crate::integrators::{Integrator, NO_BANDWIDTH, Treatment};
 use crate::judge::hypotheses::Levels;
 use crate::regions::Regions;
 use crate::variation::Variation;
@@ -68,13 +68,7 @@ pub(super) fn jobs(request: &Request, pairs: &[Pair]) -> Vec<Varied> {
     let mut jobs = Vec::new();
     for pair in chosen(pairs, request.integrators.len()) {
         let subject = &request.scenes[pairs[pair].scene];
-        // At finite bandwidth the truth is known over the whole image, not over the part that a crop leaves.
-        let regularizes = |c: &ClassPlan| matches!(c.treatment, Treatment::Regularized(_));
-        let whole_only = pairs[pair].plan.iter().any(regularizes);
         for change in CHANGES {
-            if whole_only && change == Change::Scene(Variation::Cropped) {
-                continue;
-            }
             let changed = match change {
                 Change::Scene(v) => v.of(&subject.argument).ok().flatten(),
                 Change::Paths(_) => Some((subject.entry.clone(), 1.0)),
@@ -127,7 +121,7 @@ impl Varied {
         let integrator = request.integrators[pair.integrator].as_ref();
         let original = &request.scenes[pair.scene].entry;
         let mut shape = first_shape(integrator, &pair.plan, request.bandwidth, original);
-        let (expected, part) = self.expected(request, pair, &shape.bandwidths, truths)?;
+        let expected = self.expected(request, pair, &shape.bandwidths, truths)?;
         match self.change {
             Change::Paths(k) => {
                 shape.paths_per_iteration = (k * shape.paths_per_iteration as f64) as u64;
@@ -143,12 +137,7 @@ impl Varied {
         };
         let expected = expected
             .into_iter()
-            .map(|e| {
-                let e = e?;
-                // A part of the image is known where pixels are.
-                let mean = if part { *e.areas.first()? } else { e.image };
-                Some(Expected::of_image(times(mean)))
-            })
+            .map(|e| e.map(|e| Expected::of_first(times(e.first()))))
             .collect();
         let job = Job {
             integrator: pair.integrator,
@@ -164,19 +153,19 @@ impl Varied {
         Ok(job.run(request, levels, checks, started))
     }
 
-    /// The truth of the unchanged scene: of the whole image, or (true) of the part that is left of it.
+    /// The truth of the unchanged scene: of the whole image, or of the part that is left of it.
     fn expected(
         &self,
         request: &Request,
         pair: &Pair,
         bandwidths: &[f64],
         truths: &mut Truths,
-    ) -> Result<(Vec<Option<Expected>>, bool), Error> {
+    ) -> Result<Vec<Option<Expected>>, Error> {
         let original = &request.scenes[pair.scene].entry;
         let (width, height) = (original.camera.width, original.camera.height);
-        let cropped = self.change == Change::Scene(Variation::Cropped);
-        let whole = Regions::image(width, height);
-        let regions = if cropped {
+        // The regions of the unchanged run, whose truth is known already.
+        let whole = Regions::quadtree(width, height);
+        let regions = if self.change == Change::Scene(Variation::Cropped) {
             let inside = |i: u32, n: u32| (n / 4..n - n / 4).contains(&i);
             let selected: Vec<bool> = (0..width * height)
                 .map(|k| inside(k % width, width) && inside(k / width, height))
@@ -186,10 +175,9 @@ impl Varied {
             whole
         };
         let kernel = request.truth_kernel();
-        let expected = truths.of(
+        truths.of(
             pair.scene, original, &pair.plan, &regions, kernel, bandwidths,
-        )?;
-        Ok((expected, cropped))
+        )
     }
 }
 
