@@ -79,7 +79,8 @@ pub fn run(
             reason: l.reason.clone(),
         }));
     }
-    let varied = metamorphic::jobs(request, &pairs);
+    let (varied, unvaried) = metamorphic::jobs(request, &pairs, truths)?;
+    not_run.extend(unvaried);
     let planned: u64 = pairs.iter().map(Pair::checks).sum::<u64>()
         + varied.iter().map(|v| pairs[v.pair].checks()).sum::<u64>();
     let checks = planned.max(request.checks.unwrap_or(0));
