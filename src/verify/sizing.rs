@@ -131,7 +131,9 @@ fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) 
         if s.fewest_contributions >= CONTRIBUTIONS_SAFE {
             return 1;
         }
-        let mean = (s.contributions / replicates).max(1);
+        let mean = (s.contributions / replicates)
+            .max(s.fewest_contributions)
+            .max(1);
         CONTRIBUTIONS_WANTED
             .div_ceil(mean)
             .max(2)
