@@ -261,3 +261,64 @@ fn is_radius(integrator: &dyn Integrator, pair: &Pair) -> bool {
         .any(|c| c.treatment == Treatment::Regularized(Merge));
     merges && integrator.schedule(1.0).bandwidth(0) > NO_BANDWIDTH
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrators::{Settings, by_name};
+    use crate::judge::hypotheses::LEVEL;
+    use crate::verify::effort::Effort;
+    use crate::verify::suite::{Coverage, Subject, select};
+
+    /// The scene and the integrator of each job that crops, and what is said of those that do not.
+    fn cropped(scenes: &[&str], integrator: &str) -> (Vec<String>, Vec<String>) {
+        let subject = |name: &&str| Subject {
+            argument: (*name).to_owned(),
+            entry: crate::entry::load(name).unwrap(),
+        };
+        let request = Request {
+            scenes: scenes.iter().map(subject).collect(),
+            integrators: vec![by_name(integrator, &Settings::default()).unwrap()],
+            left_out: Vec::new(),
+            effort: Effort::Quick,
+            coverage: Coverage::Everything,
+            margin: 0.5,
+            level: LEVEL,
+            checks: None,
+            seed: 1,
+            bandwidth: 0.2,
+            most_paths: 1,
+            variations: true,
+            kernel: None,
+            mask: None,
+        };
+        let (pairs, _) = select(&request.scenes, &request.integrators, request.coverage);
+        let mut truths = Truths::for_margin(request.margin);
+        let (jobs, not_run) = jobs(&request, &pairs, &mut truths).unwrap();
+        // All other changes take the first of the pairs that claim the most.
+        let others = jobs
+            .iter()
+            .filter(|j| j.name() != Variation::Cropped.name());
+        assert!(others.clone().count() >= 6 && others.clone().all(|j| j.argument == scenes[0]));
+        let crops = jobs
+            .iter()
+            .filter(|j| j.name() == Variation::Cropped.name());
+        (
+            crops.map(|j| j.argument.clone()).collect(),
+            not_run.into_iter().map(|n| n.reason).collect(),
+        )
+    }
+
+    /// In the middle of the view of `glass-column` there is a 10⁻⁵th of the light of LTTDE that is in all of it, and
+    /// none of LTRTDE; that of `mirror-wall` keeps most of each class, regularized or not.
+    #[test]
+    fn a_view_is_cropped_where_its_classes_keep_their_light() {
+        let (crops, not_run) = cropped(&["glass-column"], "lt");
+        assert!(crops.is_empty() && not_run.len() == 1, "{not_run:?}");
+        assert!(not_run[0].starts_with("cropped"), "{not_run:?}");
+        let (crops, not_run) = cropped(&["glass-column", "mirror-wall"], "lt");
+        assert_eq!((crops, not_run.len()), (vec!["mirror-wall".to_owned()], 0));
+        let (crops, not_run) = cropped(&["mirror-wall"], "pm");
+        assert_eq!((crops, not_run.len()), (vec!["mirror-wall".to_owned()], 0));
+    }
+}
