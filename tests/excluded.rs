@@ -1,6 +1,7 @@
 //! Pixels that a fold crosses, against a count and an energy that are found in other ways: the nephroid as a curve drawn point
 //! by point, a pinhole of this file's own, and light that is traced.
 
+use libm::{cos, hypot, sin, tan};
 use nephroid::entry;
 use nephroid::film::Film;
 use nephroid::integrators::{Integrator, Plan, Prepared, Settings, by_name};
@@ -11,6 +12,7 @@ use nephroid::verify::excluded::{Kept, crossed_by_folds};
 use nephroid::verify::expected::Truths;
 use nephroid::verify::run::{Request, run};
 use nephroid::verify::suite::{Coverage, Subject};
+use nephroid::verify::verdicts::Verdict;
 use nephroid_analytic::scene::{Entry, Kind};
 
 /// Light tracing that says its variance is infinite at folds.
@@ -67,7 +69,7 @@ fn floor_point(entry: &Entry, u: f64, v: f64) -> [f64; 2] {
     let forward = unit(minus(c.look_at, c.position));
     let right = unit(cross(forward, [0.0, 0.0, 1.0]));
     let up = cross(right, forward);
-    let half = (0.5 * c.field_of_view_degrees.to_radians()).tan();
+    let half = tan(0.5 * c.field_of_view_degrees.to_radians());
     let (w, h) = (f64::from(c.width), f64::from(c.height));
     let (x, y) = ((2.0 * u - w) / h * half, (h - 2.0 * v) / h * half);
     let d: V = core::array::from_fn(|k| forward[k] + x * right[k] + y * up[k]);
@@ -82,17 +84,17 @@ fn nephroid(radius: f64, half_arc: f64) -> Vec<[f64; 2]> {
     (-POINTS..=POINTS)
         .map(|k| {
             let phi = half_arc * f64::from(k) / f64::from(POINTS);
-            let (back, along) = (2.0 * phi + core::f64::consts::PI, 0.5 * radius * phi.cos());
+            let (back, along) = (2.0 * phi + core::f64::consts::PI, 0.5 * radius * cos(phi));
             [
-                radius * phi.cos() + along * back.cos(),
-                radius * phi.sin() + along * back.sin(),
+                radius * cos(phi) + along * cos(back),
+                radius * sin(phi) + along * sin(back),
             ]
         })
         .collect()
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    hypot(a[0] - b[0], a[1] - b[1])
 }
 
 /// Per pixel by how much the fold is nearer than the farthest corner, as a part of that.
@@ -186,7 +188,7 @@ fn a_verdict_tells_the_energy_that_is_left_out() {
     };
     let outcome = run(&request, &mut Truths::for_margin(0.05), &|_, _, _, _| {}).unwrap();
     let judged = |class: &str| {
-        let of = |v: &&_| class_of(v) == class;
+        let of = |v: &&Verdict| v.class == class;
         outcome.verdicts.iter().find(of).unwrap()
     };
     for class in ["LDE", "LSDE", "all"] {
@@ -221,8 +223,4 @@ fn a_verdict_tells_the_energy_that_is_left_out() {
         "{} {part} ± {error}",
         excluded.energy
     );
-}
-
-fn class_of(v: &nephroid::verify::verdicts::Verdict) -> &str {
-    &v.class
 }
