@@ -81,6 +81,7 @@ impl EntryExpectation {
             center: floor.center,
             half_width: floor.half_width,
             z: 0.0,
+            size: 1.0,
             escape: scenes::diagonal(&entry.kind),
         };
         let mut classes = Vec::new();
@@ -175,6 +176,7 @@ impl EntryExpectation {
             center: [0.0; 2],
             half_width: [f64::INFINITY; 2],
             z,
+            size: 1.0,
             escape: None,
         };
         Ok(caustic.map(|caustic| {
@@ -206,12 +208,11 @@ impl EntryExpectation {
 
     fn of_class(&self, class: &Class, x: [f64; 2], tolerance: f64) -> Moments {
         let mut sum = Pair::default();
-        let floor = [0.0; 2];
         let mut weighted = true;
         for bundle in &class.bundles {
             let merging = Merging::new(bundle, self.receiver, x, &self.profile, class.photons);
             weighted &= merging.is_weighted();
-            sum.add(&integrate(&merging, tolerance, floor));
+            sum.add(&integrate(&merging, tolerance));
         }
         if !weighted {
             (sum.value[1], sum.error[1]) = (f64::NAN, f64::INFINITY);
@@ -226,7 +227,7 @@ impl EntryExpectation {
                     &self.profile,
                     link,
                 );
-                integrate(&c, tolerance, floor)
+                integrate(&c, tolerance)
             };
             if self.technique != Technique::Linked {
                 sum.add(&connect(None));

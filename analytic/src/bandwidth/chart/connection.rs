@@ -60,6 +60,8 @@ pub(in crate::bandwidth) struct Receiver {
     pub half_width: [f64; 2],
     /// Height [m].
     pub z: f64,
+    /// About the size of what is over it [m].
+    pub size: f64,
     /// The linked distance of a ray that leaves the scene [m]; `None`: such rays contribute nothing.
     pub escape: Option<f64>,
 }
@@ -75,6 +77,11 @@ pub(in crate::bandwidth) struct Link {
 }
 
 impl Receiver {
+    /// Size of the scene [m].
+    pub fn scale(&self) -> f64 {
+        self.size
+    }
+
     /// Where an exact ray meets the plane, how far from its start, and the conditions under which it lands on the floor.
     fn landing(&self, s: &Vec3<f64>, out: &Vec3<f64>) -> ([f64; 2], f64, [f64; LANDING]) {
         let t = (s.z - self.z) / -out.z;
@@ -106,7 +113,35 @@ pub(in crate::bandwidth) struct Connection<'a> {
     technique: Technique,
     profile: &'a Profile,
     edges: Vec<f64>,
+    spans: Vec<f64>,
+    plane: Option<Plane>,
     link: Option<Link>,
+}
+
+/// Distances on the floor as levels q/(q + S²), q the squared distance and S the size of the scene: unlike q itself they are
+/// smooth where a ray turns away from the floor.
+#[derive(Clone, Debug)]
+pub(super) struct Plane {
+    square: f64,
+    pub edges: Vec<f64>,
+    pub spans: Vec<f64>,
+}
+
+impl Plane {
+    pub fn new(profile: &Profile, size: f64) -> Self {
+        let spans: Vec<f64> = profile.levels().iter().map(|r| r * r).collect();
+        let square = size * size + spans.last().copied().unwrap_or(0.0);
+        Plane {
+            square,
+            edges: spans.iter().map(|q| q / (q + square)).collect(),
+            spans,
+        }
+    }
+
+    pub fn level(&self, [dx, dy]: [f64; 2]) -> (f64, [f64; 3]) {
+        let q = dx * dx + dy * dy;
+        (1.0 / (1.0 + self.square / q), [dx, dy, 0.0])
+    }
 }
 
 /// Squared chord of an angle: 4 sin²(g/2).
@@ -124,14 +159,16 @@ impl<'a> Connection<'a> {
         profile: &'a Profile,
         link: Option<Link>,
     ) -> Self {
-        let edges = match &link {
-            None if technique == Technique::Merge => {
-                profile.levels().iter().map(|r| r * r).collect()
-            }
-            None => profile.levels().iter().map(|&g| squared_chord(g)).collect(),
-            // Beyond k(1 − cos g) = 40, that is chord² = 80/k = 20 α², nothing is left.
-            Some(l) if l.kernel == Kernel::VonMisesFisher => vec![20.0],
-            Some(_) => vec![1.0],
+        let plane = (technique == Technique::Merge).then(|| Plane::new(profile, receiver.scale()));
+        let spans = match (&link, &plane) {
+            (_, Some(plane)) => plane.spans.clone(),
+            (Some(l), _) => vec![l.reach()],
+            _ => profile.levels().iter().map(|&g| squared_chord(g)).collect(),
+        };
+        let edges = match (&link, &plane) {
+            (_, Some(plane)) => plane.edges.clone(),
+            (Some(l), _) => vec![l.reach() * l.radius * l.radius],
+            _ => spans.clone(),
         };
         Connection {
             caustic,
@@ -140,6 +177,8 @@ impl<'a> Connection<'a> {
             technique,
             profile,
             edges,
+            spans,
+            plane,
             link,
         }
     }
@@ -170,17 +209,17 @@ impl Integrand for Connection<'_> {
         &self.edges
     }
 
+    fn spans(&self) -> &[f64] {
+        &self.spans
+    }
+
     fn rounding(&self) -> f64 {
-        let last = self.edges.last().copied().unwrap_or(1.0);
-        let smallest = match &self.link {
-            Some(l) => squared_chord(libm::atan(l.radius / 10.0)),
-            None => last,
+        let size = match (&self.link, self.technique) {
+            (Some(l), _) => 1.0 + 10.0 / l.radius,
+            (None, Technique::Merge) => (1.0 + self.x.length()) / self.profile.end,
+            _ => 1.0 / sqrt(self.spans.last().copied().unwrap_or(1.0)),
         };
-        let size = match self.technique {
-            Technique::Merge => 1.0 + self.x.length(),
-            _ => 1.0,
-        };
-        f64::EPSILON * (8.0 + 8.0 * size / sqrt(smallest))
+        8.0 * f64::EPSILON * (1.0 + size)
     }
 
     fn node(&self, u: [f64; 2]) -> Node {
@@ -241,7 +280,7 @@ impl Integrand for Connection<'_> {
                 (out, t)
             }
         };
-        if self.technique == Technique::Merge {
+        if let Some(plane) = &self.plane {
             // A photon needs no connection: only the light's leg and its own to the floor.
             let (out, scale) = exact(&mut margins);
             let (p, t, landing) = self.receiver.landing(&s, &out);
@@ -254,16 +293,18 @@ impl Integrand for Connection<'_> {
                 ..legs
             };
             [margins[6], margins[7]] = surface.free(&s, &normal, &legs);
-            let [dx, dy] = [p[0] - self.x.x, p[1] - self.x.y];
+            let (level, deflection) =
+                plane.level([p[0] - self.x.x, p[1] - self.x.y]);
             let flux = strength * c2 * area * scale;
             return Node {
-                level: dx * dx + dy * dy,
+                level,
+                deflection,
                 density: [flux, flux * photons * scale],
                 distance: 0.0,
                 margins,
             };
         }
-        let (squared, density) = if self.from_camera() {
+        let (difference, density) = if self.from_camera() {
             let (out, scale) = match interaction {
                 Interaction::Mirror(r) => (reflect(-to_x, normal), *r),
                 Interaction::Interface(index) => {
@@ -278,30 +319,37 @@ impl Integrand for Connection<'_> {
                 sample *= sqrt(c2 / c1);
             }
             let w = common * scale * cosine;
-            ((out - to_light).length_squared(), [w, w * sample])
+            (out - to_light, [w, w * sample])
         } else {
             let (out, scale) = exact(&mut margins);
             let w = common * scale * c2;
             let sample = photons * scale * cx / (r1 * r1);
-            ((out - to_x).length_squared(), [w, w * sample])
+            (out - to_x, [w, w * sample])
         };
-        let (mut level, mut distance) = (squared, 0.0);
+        let mut level = difference.length_squared();
+        let (mut deflection, mut distance) = (difference, 0.0);
         if let Some(link) = &self.link {
             let (out, _) = exact(&mut margins);
             distance = link.distance(&self.receiver, &s, &out, [r1, r2], &mut margins);
-            // 4 sin²(α/2) = 2 r²/(q (q + d)), q² = d² + r².
-            let (r, q) = (link.radius, hypot(distance, link.radius));
-            let unit = match link.kernel {
+            // The support is D² < k B² with the squared band B² = 4 sin²(α/2) (von Mises–Fisher: α²), tan α = r κ, κ = 1/d: even
+            // in κ, so that D² − k B² is smooth where the ray turns away from the floor.
+            let tangent = link.radius / distance;
+            let band = match link.kernel {
                 Kernel::VonMisesFisher => {
-                    let alpha = atan2(r, distance);
+                    let alpha = libm::atan(tangent);
                     alpha * alpha
                 }
-                _ => 2.0 * r * r / (q * (q + distance)),
+                _ => {
+                    let secant = hypot(1.0, tangent);
+                    2.0 * tangent * tangent / (secant * (secant + 1.0))
+                }
             };
-            level = squared / unit;
+            level += link.reach() * (link.radius * link.radius - band);
+            deflection = difference * (1.0 / sqrt(band));
         }
         Node {
             level,
+            deflection: deflection.to_f64(),
             density,
             distance,
             margins,
@@ -310,21 +358,24 @@ impl Integrand for Connection<'_> {
 
     fn kernel(&self, ring: usize, node: &Node) -> [f64; 2] {
         let Some(link) = &self.link else {
-            let g = if self.technique == Technique::Merge {
-                sqrt(node.level)
+            let length = sqrt(node.square());
+            let g = if self.plane.is_some() {
+                length
             } else {
-                2.0 * asin((0.5 * sqrt(node.level)).min(1.0))
+                2.0 * asin((0.5 * length).min(1.0))
             };
             return self.profile.in_ring(ring, g);
         };
         let alpha = atan2(link.radius, node.distance);
+        // D²/B².
+        let ratio = node.square();
         let phi = match link.kernel {
             Kernel::VonMisesFisher => {
                 let (k, n) = von_mises_fisher(alpha);
-                n * exp(-0.5 * k * node.level * alpha * alpha)
+                n * exp(-0.5 * k * ratio * alpha * alpha)
             }
             Kernel::Epanechnikov => {
-                let chord = 2.0 * libm::sin(0.5 * alpha) * sqrt(node.level);
+                let chord = 2.0 * libm::sin(0.5 * alpha) * sqrt(ratio);
                 let t = 2.0 * asin((0.5 * chord).min(1.0)) / alpha;
                 epanechnikov_height(alpha) * (1.0 - t * t)
             }
@@ -335,6 +386,14 @@ impl Integrand for Connection<'_> {
 }
 
 impl Link {
+    /// The end of the kernel as D²/B²: beyond k(1 − cos g) = 40, that is D² = 80/k = 20 α², nothing is left.
+    fn reach(&self) -> f64 {
+        match self.kernel {
+            Kernel::VonMisesFisher => 20.0,
+            _ => 1.0,
+        }
+    }
+
     /// The distance d, with the conditions of landing (or of the first that fails) as margins.
     fn distance(
         &self,

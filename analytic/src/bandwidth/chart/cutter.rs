@@ -15,8 +15,6 @@ use crate::flux::border::{self, Border, Part};
 use crate::flux::chart::Chart;
 use crate::flux::poly::{Chebyshev, Grid, N, nodes};
 
-/// Coarsest cells: 2^this along both axes.
-const FIRST: u32 = 2;
 /// Halvings, at most: to 1e-9 of the domain along both axes and then some.
 const DEEPEST: u32 = 72;
 /// Halvings after which samples that do not exist are believed not to, where that cannot be proven.
@@ -76,11 +74,12 @@ struct Cutter<'a, I> {
     looks: usize,
 }
 
-/// ∫∫ of the integrand, to `tolerance × max(|value|, floor)`.
-pub(in crate::bandwidth) fn integrate<I: Integrand>(
+/// ∫∫ of the integrand over rectangles of parameters, to `tolerance × |value + others|`.
+pub(super) fn integrate<I: Integrand>(
     integrand: &I,
+    rectangles: &[[[f64; 2]; 2]],
     tolerance: f64,
-    floor: [f64; 2],
+    others: [f64; 2],
 ) -> Pair {
     let mut cutter = Cutter {
         integrand,
@@ -90,25 +89,32 @@ pub(in crate::bandwidth) fn integrate<I: Integrand>(
         lost: [0.0; 2],
         looks: 0,
     };
-    let whole = Chart::new(integrand.domain());
-    cutter.first_look(&whole);
-    let step = 2.0 / f64::from(1_u32 << FIRST);
-    for j in 0..1 << FIRST {
-        for i in 0..1 << FIRST {
-            let range = [i, j].map(|k| {
-                let low = -1.0 + step * f64::from(k);
-                [low, low + step]
+    let whole = integrand.domain();
+    cutter.first_look(&Chart::new(whole));
+    for rectangle in rectangles {
+        // As many cells as the whole has, by its share of it.
+        let share = |k: usize| {
+            let part = (rectangle[k][1] - rectangle[k][0]) / (whole[k][1] - whole[k][0]);
+            libm::ceil(part * f64::from(integrand.coarse()[k]) - 1e-9).max(1.0)
+        };
+        let counts = [share(0), share(1)];
+        let chart = Chart::new(*rectangle);
+        for k in 0..(counts[0] * counts[1]) as u32 {
+            let at = [f64::from(k) % counts[0], libm::floor(f64::from(k) / counts[0])];
+            let range = [0, 1].map(|k| {
+                let low = -1.0 + 2.0 * at[k] / counts[k];
+                [low, low + 2.0 / counts[k]]
             });
             cutter.queue.push_back(Task {
-                chart: whole.part(range),
+                chart: chart.part(range),
                 settled: 0,
                 ring: None,
-                depth: 2 * FIRST,
+                depth: 0,
             });
         }
     }
     cutter.drain();
-    cutter.refine(tolerance, floor)
+    cutter.refine(tolerance, others)
 }
 
 impl<I: Integrand> Cutter<'_, I> {
@@ -142,12 +148,12 @@ impl<I: Integrand> Cutter<'_, I> {
     }
 
     /// Halves the worst leaves until all errors together are small enough.
-    fn refine(&mut self, tolerance: f64, floor: [f64; 2]) -> Pair {
+    fn refine(&mut self, tolerance: f64, others: [f64; 2]) -> Pair {
         let mut total = Pair::default();
         for leaf in &self.leaves {
             total.add(&leaf.pair);
         }
-        let target = |total: &Pair, k: usize| tolerance * total.value[k].abs().max(floor[k]);
+        let target = |total: &Pair, k: usize| tolerance * (total.value[k] + others[k]).abs();
         let urgency = |pair: &Pair, total: &Pair| {
             (0..2)
                 .map(|k| pair.error[k] / target(total, k).max(f64::MIN_POSITIVE))

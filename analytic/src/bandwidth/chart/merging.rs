@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use libm::sqrt;
 
-use super::connection::Receiver;
+use super::connection::{Plane, Receiver};
 use super::{Integrand, MARGINS, Node};
 use crate::bandwidth::kernel::Profile;
 use crate::flux::Bundle;
@@ -16,7 +16,7 @@ pub(in crate::bandwidth) struct Merging<'a> {
     receiver: Receiver,
     x: [f64; 2],
     profile: &'a Profile,
-    edges: Vec<f64>,
+    plane: Plane,
     photons: f64,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Merging<'a> {
             receiver,
             x,
             profile,
-            edges: profile.levels().iter().map(|r| r * r).collect(),
+            plane: Plane::new(profile, receiver.scale()),
             photons,
         }
     }
@@ -53,23 +53,23 @@ impl Integrand for Merging<'_> {
     }
 
     fn edges(&self) -> &[f64] {
-        &self.edges
+        &self.plane.edges
+    }
+
+    fn spans(&self) -> &[f64] {
+        &self.plane.spans
     }
 
     fn rounding(&self) -> f64 {
-        let last = self.edges.last().copied().unwrap_or(1.0);
         let size = f64::abs(self.x[0]) + f64::abs(self.x[1]) + 1.0;
-        f64::EPSILON * (8.0 + 8.0 * size / sqrt(last))
+        8.0 * f64::EPSILON * (1.0 + size / self.profile.end)
     }
 
     fn node(&self, u: [f64; 2]) -> Node {
         let ray = self.bundle.ray(u);
         let mut margins = [1.0; MARGINS];
         margins[..crate::flux::MARGINS].copy_from_slice(&ray.margins);
-        let mut level = 0.0;
         for k in 0..2 {
-            let d = ray.floor[k] - self.x[k];
-            level += d * d;
             let half = self.receiver.half_width[k];
             let s = (ray.floor[k] - self.receiver.center[k]) / half;
             // Negative on both sides, and smooth through infinity.
@@ -79,9 +79,13 @@ impl Integrand for Merging<'_> {
                 (1.0 - s) * (1.0 + s) / (1.0 + s * s)
             };
         }
+        let (level, deflection) = self
+            .plane
+            .level([ray.floor[0] - self.x[0], ray.floor[1] - self.x[1]]);
         let sample = self.photons * self.bundle.weight(u).unwrap_or(0.0);
         Node {
             level,
+            deflection,
             density: [ray.flux, ray.flux * sample],
             distance: 0.0,
             margins,
@@ -89,6 +93,6 @@ impl Integrand for Merging<'_> {
     }
 
     fn kernel(&self, ring: usize, node: &Node) -> [f64; 2] {
-        self.profile.in_ring(ring, sqrt(node.level))
+        self.profile.in_ring(ring, sqrt(node.square()))
     }
 }
