@@ -69,6 +69,16 @@ impl EntryExpectation {
         entry.validate()?;
         let technique = estimator.technique;
         check(technique, estimator.kernel, estimator.bandwidths)?;
+        if estimator.convention == Convention::Light
+            && technique == Technique::Linked
+            && scenes::is_beam(&entry.kind)
+        {
+            return Err(InvalidParameter {
+                key: "convention".to_owned(),
+                found: estimator.convention.name().to_owned(),
+                allowed: "exact, vertex (parallel light is infinitely far away)".to_owned(),
+            });
+        }
         let unknown = || InvalidParameter {
             key: "kind".to_owned(),
             found: entry.kind.name().to_owned(),
@@ -101,15 +111,14 @@ impl EntryExpectation {
             if class.light.is_empty() {
                 continue;
             }
-            let bundles = match bundles.get_mut(position) {
-                Some(b) if technique == Technique::Merge => core::mem::take(b),
+            // Any number of interactions can be merged; what is connected is mollified at one vertex.
+            let caustics = scenes::caustics(&entry.kind, class, beam_area);
+            let bundles = match (bundles.get_mut(position), &caustics) {
+                (Some(b), None) if technique == Technique::Merge => core::mem::take(b),
                 _ => Vec::new(),
             };
-            let caustics = match technique {
-                Technique::Merge => Vec::new(),
-                _ => scenes::caustics(&entry.kind, class, beam_area).ok_or_else(unknown)?,
-            };
-            if technique == Technique::Merge && bundles.is_empty() {
+            let caustics = caustics.unwrap_or_default();
+            if caustics.is_empty() && bundles.is_empty() {
                 return Err(unknown());
             }
             classes.push(Class {

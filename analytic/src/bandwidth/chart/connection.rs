@@ -293,11 +293,11 @@ impl Integrand for Connection<'_> {
                 ..legs
             };
             [margins[6], margins[7]] = surface.free(&s, &normal, &legs);
-            let (level, deflection) =
-                plane.level([p[0] - self.x.x, p[1] - self.x.y]);
+            let (level, deflection) = plane.level([p[0] - self.x.x, p[1] - self.x.y]);
             let flux = strength * c2 * area * scale;
             return Node {
                 level,
+                least: f64::NAN,
                 deflection,
                 density: [flux, flux * photons * scale],
                 distance: 0.0,
@@ -327,6 +327,15 @@ impl Integrand for Connection<'_> {
             (out - to_x, [w, w * sample])
         };
         let mut level = difference.length_squared();
+        // Across the normal the exact direction is n times the incident one, also beyond the critical angle.
+        let least = match (interaction, self.from_camera()) {
+            (Interaction::Interface(index), true) => {
+                let d = to_x * *index + to_light;
+                let across = d - normal * d.dot(normal);
+                across.length_squared()
+            }
+            _ => f64::NAN,
+        };
         let (mut deflection, mut distance) = (difference, 0.0);
         if let Some(link) = &self.link {
             let (out, _) = exact(&mut margins);
@@ -349,6 +358,7 @@ impl Integrand for Connection<'_> {
         }
         Node {
             level,
+            least,
             deflection: deflection.to_f64(),
             density,
             distance,

@@ -100,7 +100,10 @@ pub(super) fn integrate<I: Integrand>(
         let counts = [share(0), share(1)];
         let chart = Chart::new(*rectangle);
         for k in 0..(counts[0] * counts[1]) as u32 {
-            let at = [f64::from(k) % counts[0], libm::floor(f64::from(k) / counts[0])];
+            let at = [
+                f64::from(k) % counts[0],
+                libm::floor(f64::from(k) / counts[0]),
+            ];
             let range = [0, 1].map(|k| {
                 let low = -1.0 + 2.0 * at[k] / counts[k];
                 [low, low + 2.0 / counts[k]]
@@ -189,7 +192,6 @@ impl<I: Integrand> Cutter<'_, I> {
                 heap.push(leaf);
             }
         }
-        if std::env::var("ZZ").is_ok() { eprintln!("looks {} leaves {}", self.looks, heap.len()); }
         // Summed again, without what subtraction has left.
         let mut sum = Pair {
             value: [0.0; 2],
@@ -255,6 +257,15 @@ impl<I: Integrand> Cutter<'_, I> {
         // The kernel first: most of the parameters are out of its reach.
         let mut level = None;
         if task.ring.is_none() {
+            let least = grid(&|n| n.least);
+            if finite(&least) {
+                let c = Chebyshev::new(&least);
+                let [p, q] = c.tails();
+                let bottom = c.c[0][0] - c.spread() - REMAINDER * (p + q);
+                if self.integrand.edges().last().is_none_or(|e| bottom >= *e) {
+                    return;
+                }
+            }
             let g = grid(&|n| n.level);
             if finite(&g) {
                 let c = Chebyshev::new(&g);
@@ -346,8 +357,7 @@ impl<I: Integrand> Cutter<'_, I> {
             let offset = if inside { 1.0 } else { -1.0 };
             let g: Grid = g.map(|row| row.map(|v| offset + sign * v));
             let c = c.combined(sign, c, 0.0, offset);
-            let value =
-                |chart: &Chart, p: [f64; 2]| offset + sign * self.node(chart, p).0.level;
+            let value = |chart: &Chart, p: [f64; 2]| offset + sign * self.node(chart, p).0.level;
             match border::find(&task.chart, &g, Some(&c), task.depth, size, false, &value) {
                 Border::Halve(axis) => {
                     self.halve(task, axis);

@@ -85,6 +85,7 @@ impl Integrand for Merging<'_> {
         let sample = self.photons * self.bundle.weight(u).unwrap_or(0.0);
         Node {
             level,
+            least: f64::NAN,
             deflection,
             density: [ray.flux, ray.flux * sample],
             distance: 0.0,

@@ -13,8 +13,8 @@
 pub(super) mod connection;
 mod cutter;
 pub(super) mod merging;
-mod star;
 pub(super) mod scenes;
+mod star;
 mod surfaces;
 
 use super::quadrature::Pair;
@@ -28,6 +28,8 @@ pub(super) struct Node {
     /// Where the kernel ends, in the units of [`Integrand::edges`]: smooth at the scale of the scene however small the bandwidth is,
     /// so that its interpolants tell where the kernel cannot reach.
     pub level: f64,
+    /// Not above the level, and smooth where the level is not (at the critical angle); NaN where there is nothing better than the level.
+    pub least: f64,
     /// What the kernel depends on, zero at a root: the chord of the deflection, 2 sin(g/2) long, or the way on the floor [m], in units
     /// of the bandwidth where that depends on the node.
     pub deflection: [f64; 3],

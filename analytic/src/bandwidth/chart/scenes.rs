@@ -6,7 +6,7 @@ use libm::{acos, atan2, cos, hypot, sin, tan};
 
 use super::connection::{Caustic, Interaction, Source};
 use super::surfaces::{
-    ConicWall, Cylinder, FocalConic, HeightField, Level, SphereCap, Surface, frame_of,
+    ConicWall, Cylinder, FocalConic, HeightField, Level, Rectangle, SphereCap, Surface, frame_of,
 };
 use crate::bandwidth::entry::photons as flux_of;
 use crate::class::PathClass;
@@ -25,10 +25,7 @@ fn focal(light: &FocalLight, [x, y]: [f64; 2], z: f64) -> Source {
 
 fn beam(light: &DirectionalLight) -> Source {
     let elevation = light.elevation_degrees.to_radians();
-    Source::Beam(
-        vec3(cos(elevation), 0.0, -sin(elevation)),
-        light.irradiance,
-    )
+    Source::Beam(vec3(cos(elevation), 0.0, -sin(elevation)), light.irradiance)
 }
 
 fn vertical(light: &VerticalLight) -> Source {
@@ -63,6 +60,11 @@ fn source(kind: &Kind) -> Option<Source> {
     })
 }
 
+/// Whether the light is parallel.
+pub(in crate::bandwidth) fn is_beam(kind: &Kind) -> bool {
+    matches!(source(kind), Some(Source::Beam(..)))
+}
+
 /// Flux of all photons [W]: 4πI of a point light, or what a beam carries through `beam_area` [m²].
 pub(in crate::bandwidth) fn photons(kind: &Kind, beam_area: f64) -> Option<f64> {
     source(kind).map(|s| flux_of(&s, beam_area))
@@ -90,6 +92,16 @@ pub(in crate::bandwidth) fn caustics(
 /// The one surface of a kind, and what it does.
 fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
     Some(match kind {
+        Kind::PlanarMirror(s) => {
+            let (m, normal) = (&s.mirror, Vec3::from_f64(s.mirror.normal).normalized());
+            let along = Vec3::from_f64(m.edge).normalized();
+            let mirror = Rectangle {
+                center: Vec3::from_f64(m.center),
+                half: [along * m.half_width, normal.cross(along) * m.half_height],
+                normal,
+            };
+            (Arc::new(mirror), Interaction::Mirror(m.reflectance))
+        }
         Kind::ConcaveSphere(s) => {
             let cap = SphereCap {
                 center: Vec3::from_f64(s.cap.center),
@@ -133,10 +145,7 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
             let [x, y, _] = s.light.position;
             let (dx, dy) = (x - s.pillar.center[0], y - s.pillar.center[1]);
             // Only what is in front of the tangents from the light is lit.
-            let (at, half) = (
-                atan2(dy, dx),
-                acos(s.pillar.radius / hypot(dx, dy)),
-            );
+            let (at, half) = (atan2(dy, dx), acos(s.pillar.radius / hypot(dx, dy)));
             let wall = Cylinder {
                 center: s.pillar.center,
                 radius: s.pillar.radius,
@@ -214,11 +223,7 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
                 domain: [[cx - reach, cx + reach], [cy - reach, cy + reach]],
                 side: -1.0,
                 height,
-                dish: Some((
-                    [cx, cy],
-                    s.dish.focal_length,
-                    [s.dish.inner_radius, reach],
-                )),
+                dish: Some(([cx, cy], s.dish.focal_length, [s.dish.inner_radius, reach])),
             };
             (Arc::new(surface), Interaction::Mirror(s.dish.reflectance))
         }
@@ -261,12 +266,11 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
 const WIDEST: f64 = 4.0;
 
 fn level(height: f64, light: &PointLight, floor: &Floor) -> Level {
-    let (center, half) = (floor.center, floor.half_width);
-    let scale = |k: usize| half[k] + height + (light.position[2] - height).abs();
+    let half = floor.half_width;
     Level {
         height,
-        x: [center[0], scale(0)],
-        y: [center[1], scale(1)],
+        center: floor.center,
+        distance: half[0].max(half[1]).max(height + light.position[2]),
         side: 1.0,
     }
 }
@@ -319,21 +323,18 @@ pub(in crate::bandwidth) fn interface(form: &FlatInterface<f64>) -> Option<Caust
     }
     let source = Source::Point(form.light, form.intensity);
     let above = form.light.z > form.surface_z;
-    let scale = f64::abs(form.light.z - form.surface_z) + f64::abs(form.receiver_z - form.surface_z);
+    let scale =
+        f64::abs(form.light.z - form.surface_z) + f64::abs(form.receiver_z - form.surface_z);
     Some(Caustic {
         photons: flux_of(&source, 0.0),
         source,
         surface: Arc::new(Level {
             height: form.surface_z,
-            x: [form.light.x, scale],
-            y: [form.light.y, scale],
+            center: [form.light.x, form.light.y],
+            distance: scale,
             side: if above { 1.0 } else { -1.0 },
         }),
-        interaction: Interaction::Interface(if above {
-            form.index
-        } else {
-            1.0 / form.index
-        }),
+        interaction: Interaction::Interface(if above { form.index } else { 1.0 / form.index }),
     })
 }
 

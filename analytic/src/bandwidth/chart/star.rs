@@ -39,7 +39,10 @@ fn derivative<I: Integrand>(integrand: &I, u: [f64; 2], h: [f64; 2]) -> [[f64; 3
         let (mut low, mut high) = (u, u);
         low[k] -= h[k];
         high[k] += h[k];
-        let (a, b) = (integrand.node(low).deflection, integrand.node(high).deflection);
+        let (a, b) = (
+            integrand.node(low).deflection,
+            integrand.node(high).deflection,
+        );
         core::array::from_fn(|i| (b[i] - a[i]) / (high[k] - low[k]))
     })
 }
@@ -141,7 +144,10 @@ fn is_plain<I: Integrand>(integrand: &I, inner: Rectangle, end: f64) -> bool {
     });
     let fit = |f: &dyn Fn(&Node) -> f64| {
         let g: Grid = core::array::from_fn(|l| core::array::from_fn(|k| f(&samples[l][k])));
-        g.iter().flatten().all(|v| v.is_finite()).then(|| Chebyshev::new(&g))
+        g.iter()
+            .flatten()
+            .all(|v| v.is_finite())
+            .then(|| Chebyshev::new(&g))
     };
     for k in 0..MARGINS {
         let holds = fit(&|n| n.margins[k]).is_some_and(|c| {

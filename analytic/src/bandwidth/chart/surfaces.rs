@@ -168,13 +168,16 @@ impl Surface for Cylinder {
     }
 }
 
-/// A horizontal plane z = `height` over a rectangle, the light above it.
+/// The unbounded plane z = `height`, by directions towards it from a point at a distance, in stereographic projection: smooth up to
+/// the horizon.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::bandwidth) struct Level {
     pub height: f64,
-    pub x: [f64; 2],
-    pub y: [f64; 2],
-    /// 1 where the light is above.
+    /// Under or over the point [m].
+    pub center: [f64; 2],
+    /// Its distance [m].
+    pub distance: f64,
+    /// 1 where the light is above, −1 where it is below.
     pub side: f64,
 }
 
@@ -183,19 +186,40 @@ impl Surface for Level {
         [[-1.0, 1.0]; 2]
     }
 
-    /// The parameters are stretched towards infinity: p = c + h u/(1 − u²).
     fn vertex(&self, u: [f64; 2]) -> Vertex {
-        let mut area = 1.0;
-        let at = |k: usize, [c, h]: [f64; 2], area: &mut f64| {
-            let v = (1.0 - u[k]) * (1.0 + u[k]);
-            *area *= h * (1.0 + u[k] * u[k]) / (v * v);
-            c + h * u[k] / v
-        };
-        let p = [at(0, self.x, &mut area), at(1, self.y, &mut area)];
+        let square = u[0] * u[0] + u[1] * u[1];
+        let gap = 1.0 - square;
+        let scale = 2.0 * self.distance / gap;
+        let [x, y] = self.center;
         Vertex {
-            point: vec3(p[0], p[1], self.height),
+            point: vec3(x + scale * u[0], y + scale * u[1], self.height),
             normal: vec3(0.0, 0.0, self.side),
-            area,
+            area: scale * scale * (1.0 + square) / gap,
+            margins: [gap, 1.0, 1.0],
+        }
+    }
+}
+
+/// A rectangle, by its two edges; one that goes below the floor is cut there by the receiver's cosine.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Rectangle {
+    pub center: Vec3<f64>,
+    /// Half of both edges [m], at right angles.
+    pub half: [Vec3<f64>; 2],
+    /// Unit normal on the side of the light.
+    pub normal: Vec3<f64>,
+}
+
+impl Surface for Rectangle {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-1.0, 1.0]; 2]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        Vertex {
+            point: self.center + self.half[0] * u[0] + self.half[1] * u[1],
+            normal: self.normal,
+            area: self.half[0].length() * self.half[1].length(),
             margins: [1.0; 3],
         }
     }
