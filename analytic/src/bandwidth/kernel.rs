@@ -301,6 +301,24 @@ impl Profile {
         }
     }
 
+    /// Levels at which the kernel jumps or kinks, ascending, and its end.
+    pub fn levels(&self) -> Vec<f64> {
+        if self.edges.is_empty() {
+            vec![self.end]
+        } else {
+            self.edges.clone()
+        }
+    }
+
+    /// φ̄ and φ̄² at a level between the levels `ring - 1` and `ring`.
+    pub fn in_ring(&self, ring: usize, g: f64) -> [f64; 2] {
+        let last = self.pieces.len().saturating_sub(1);
+        match self.pieces.get(ring.min(last)) {
+            Some(piece) => self.heights(piece, g),
+            None => [0.0; 2],
+        }
+    }
+
     /// φ̄²/φ̄ at the top.
     pub fn ratio(&self) -> f64 {
         let [mean, square] = self.top;

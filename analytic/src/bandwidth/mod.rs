@@ -14,8 +14,10 @@
 //! the mirror's plane (otherwise the expectation is zero), and a segment from there to a point of the plane meets the
 //! plane only at its end. The floor hides nothing either: y and s are above it.
 
+mod chart;
 mod clip;
 mod cubature;
+pub mod entry;
 pub mod film;
 mod hits;
 mod kernel;
@@ -96,6 +98,33 @@ impl Technique {
                 Kernel::Cone,
             ],
             _ => &[Kernel::Cone, Kernel::Epanechnikov, Kernel::VonMisesFisher],
+        }
+    }
+}
+
+/// From which distance d a linked bandwidth atan(r/d) is found, at a mirror point s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Convention {
+    /// Along the exact continuation of the light's ray to the receiver: the right one, for a kernel of radius r there. Where
+    /// that ray leaves the scene, d is the scene's diagonal.
+    #[default]
+    Exact,
+    /// To the receiver point that is connected.
+    Vertex,
+    /// To the light.
+    Light,
+}
+
+impl Convention {
+    /// All conventions, in the order in which they are listed.
+    pub const ALL: [Convention; 3] = [Convention::Exact, Convention::Vertex, Convention::Light];
+
+    /// The name on the command line and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Convention::Exact => "exact",
+            Convention::Vertex => "vertex",
+            Convention::Light => "light",
         }
     }
 }
@@ -181,6 +210,7 @@ macro_rules! named {
 }
 
 named!(Technique);
+named!(Convention);
 named!(Kernel);
 
 /// The first two moments of an estimator, each with an error bound.

@@ -24,13 +24,15 @@ pub enum Part {
 }
 
 /// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients;
-/// `size` is the scale of the margin's rounding.
+/// `size` is the scale of the margin's rounding. Where a border may coincide with the chart's own end, `coincides`, it is moved
+/// outwards by as much, so that rounding does not cut it.
 pub fn find(
     chart: &Chart,
     g: &Grid,
     c: Option<&Chebyshev>,
     depth: u32,
     size: f64,
+    coincides: bool,
     value: &dyn Fn(&Chart, [f64; 2]) -> f64,
 ) -> Border {
     let axis = match c.map_or_else(|| by_signs(g, depth), monotone) {
@@ -45,9 +47,14 @@ pub fn find(
     // Rounding must not cut a border that coincides with the chart's own.
     let scale = g.iter().flatten().map(|v| v.abs());
     let scale = scale.filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let shift = if coincides {
+        1e-13 * scale + rounding
+    } else {
+        0.0
+    };
     let at = |s: f64, t: f64| {
         let p = if axis == 0 { [t, s] } else { [s, t] };
-        value(chart, p) + 1e-13 * scale + rounding
+        value(chart, p) + shift
     };
     let class = |s: f64| [at(s, -1.0) >= 0.0, at(s, 1.0) >= 0.0];
 

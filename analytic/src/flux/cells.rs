@@ -366,7 +366,8 @@ impl Cutter<'_> {
             return;
         }
         let value = |chart: &Chart, p: [f64; 2]| self.sample(chart, p).conditions[m];
-        match border::find(&task.chart, g, c, task.depth, self.scales[m], &value) {
+        let size = self.scales[m];
+        match border::find(&task.chart, g, c, task.depth, size, true, &value) {
             Border::Halve(axis) => self.halve(task, axis),
             Border::Parts(parts) => {
                 for (chart, part) in parts {

@@ -40,7 +40,7 @@ impl Cutter<'_> {
             *miss = in_place.max(in_flux);
         }
         let worst = miss[0].max(miss[1]).max(inherited);
-        let total = integral(&flux);
+        let total = flux.integral();
         if worst > SMOOTH.max(inherited) {
             // What a small cell misses may be large for the cell, but not for the pixel.
             if 4.0 * amount * worst.min(1.0) > 10.0 * NEGLIGIBLE * self.typical {
@@ -138,23 +138,6 @@ impl Cutter<'_> {
         let size = [film, columns].map(|lines| lines.map(length).into_iter().fold(0.0, f64::max));
         Some((range, size))
     }
-}
-
-/// The integral over [-1, 1]²: ∫ T_k = 2/(1 - k²) for even k, 0 for odd.
-fn integral(c: &Chebyshev) -> f64 {
-    let weight = |k: usize| {
-        if k.is_multiple_of(2) {
-            2.0 / (1.0 - (k * k) as f64)
-        } else {
-            0.0
-        }
-    };
-    let mut sum = 0.0;
-    for (l, row) in c.c.iter().enumerate() {
-        let inner: f64 = row.iter().enumerate().map(|(k, c)| weight(k) * c).sum();
-        sum += weight(l) * inner;
-    }
-    sum
 }
 
 /// Whether the map is the identity plus a contraction, after its linear part is inverted: then it is one-to-one, and

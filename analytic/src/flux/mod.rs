@@ -5,14 +5,14 @@
 //! parameters that is the integral of a smooth function even where the irradiance has a fold, a cusp or a focus; what is
 //! left to be exact about is the region of integration.
 
-mod border;
+pub(crate) mod border;
 mod cells;
-mod chart;
+pub(crate) mod chart;
 pub mod direct;
 mod folded;
 mod keep;
 mod lens;
-mod poly;
+pub(crate) mod poly;
 mod regular;
 
 use core::fmt::{self, Debug, Formatter};
@@ -48,6 +48,11 @@ pub trait Bundle: Debug + Send + Sync {
     /// The ray of a parameter pair inside the domain. Where a margin is negative the floor point and the flux may be
     /// anything finite or NaN.
     fn ray(&self, u: [f64; 2]) -> Ray;
+    /// Product of the reflectances and transmittances on the way of a ray that exists; `None` where it is not known apart
+    /// from the flux.
+    fn weight(&self, _u: [f64; 2]) -> Option<f64> {
+        None
+    }
 }
 
 /// The image: one layer per path class, each the sum of several bundles (also shadows with negative flux).

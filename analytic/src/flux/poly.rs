@@ -150,6 +150,23 @@ impl Chebyshev {
         Chebyshev { c }
     }
 
+    /// The integral over [-1, 1]²: ∫ T_k = 2/(1 - k²) for even k, 0 for odd.
+    pub fn integral(&self) -> f64 {
+        let weight = |k: usize| {
+            if k.is_multiple_of(2) {
+                2.0 / (1.0 - (k * k) as f64)
+            } else {
+                0.0
+            }
+        };
+        let mut sum = 0.0;
+        for (l, row) in self.c.iter().enumerate() {
+            let inner: f64 = row.iter().enumerate().map(|(k, c)| weight(k) * c).sum();
+            sum += weight(l) * inner;
+        }
+        sum
+    }
+
     /// The same with the variables exchanged.
     pub fn exchanged(&self) -> Self {
         Chebyshev {

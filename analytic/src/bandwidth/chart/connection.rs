@@ -1,0 +1,434 @@
+//! Connections through one mollified vertex: `camera`, `light`, `symmetric` and `linked` on any mirror or interface.
+//!
+//! Receiver x, vertex s, light y (or parallel light), r₁ = |s − x|, r₂ = |s − y|, c_x, c₁, c₂ the cosines at x, and at s
+//! towards x and towards the light; dA the area of the surface:
+//!
+//! ```text
+//! camera     E = ∫ φ n² T I c_x c₁/(r₁² r₂²) dA    f = π n² T I/r₂²         kernel at the direction to the light
+//! light      E = ∫ φ T I c_x c₂/(r₁² r₂²) dA       f = 4π T I c_x/r₁²       kernel at the direction to the receiver
+//! symmetric  E = ∫ φ R I c_x √(c₁c₂)/(r₁² r₂²) dA  f = π R I √(c₂/c₁)/r₂²   (at an interface: camera)
+//! ```
+//!
+//! n the index of the receiver's medium relative to the light's, T the Fresnel factor at the side from which the path comes;
+//! for a mirror n = 1 and T = R. Parallel light: I/r₂² becomes E₀, and photons are uniform over a cross-section: 4πI becomes
+//! its flux. `linked` is `light` with α = atan(r/d). Source: `theory/bandwidth.md` sections 2 and 4.
+
+use core::f64::consts::PI;
+use std::sync::Arc;
+
+use libm::{asin, atan2, exp, hypot, sqrt};
+
+use super::surfaces::{Legs, Surface, Vertex};
+use super::{Integrand, MARGINS, Node};
+use crate::bandwidth::kernel::{Profile, cone_height, epanechnikov_height, von_mises_fisher};
+use crate::bandwidth::{Convention, Kernel, Technique};
+use crate::optics::{fresnel_transmittance, reflect};
+use crate::vector::{Vec3, vec3};
+
+/// Where the light comes from.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) enum Source {
+    /// Position [m] and radiant intensity [W/sr].
+    Point(Vec3<f64>, f64),
+    /// Direction of travel (unit) and irradiance across it [W/m²].
+    Beam(Vec3<f64>, f64),
+}
+
+/// What the surface does.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) enum Interaction {
+    /// Reflects this part.
+    Mirror(f64),
+    /// Refracts; the index on the receiver's side relative to the light's.
+    Interface(f64),
+}
+
+/// Light that reaches the floor through one specular vertex.
+#[derive(Clone, Debug)]
+pub(in crate::bandwidth) struct Caustic {
+    pub source: Source,
+    pub surface: Arc<dyn Surface>,
+    pub interaction: Interaction,
+    /// Flux of all photons [W]: 4πI, or what a beam carries through the cross-section over which it is sampled.
+    pub photons: f64,
+}
+
+/// What ends the exact ray: the clipped floor z = 0.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Receiver {
+    pub center: [f64; 2],
+    pub half_width: [f64; 2],
+    /// Height [m].
+    pub z: f64,
+    /// About the size of what is over it [m].
+    pub size: f64,
+    /// The linked distance of a ray that leaves the scene [m]; `None`: such rays contribute nothing.
+    pub escape: Option<f64>,
+}
+
+/// How a linked bandwidth follows from a radius.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Link {
+    pub convention: Convention,
+    pub radius: f64,
+    pub kernel: Kernel,
+    /// Whether the exact ray misses the floor, and through which of its conditions; `None`: it lands.
+    pub escapes: Option<usize>,
+}
+
+impl Receiver {
+    /// Size of the scene [m].
+    pub fn scale(&self) -> f64 {
+        self.size
+    }
+
+    /// Where an exact ray meets the plane, how far from its start, and the conditions under which it lands on the floor.
+    fn landing(&self, s: &Vec3<f64>, out: &Vec3<f64>) -> ([f64; 2], f64, [f64; LANDING]) {
+        let t = (s.z - self.z) / -out.z;
+        let p = [s.x + out.x * t, s.y + out.y * t];
+        let side = |k: usize| {
+            let v = (p[k] - self.center[k]) / self.half_width[k];
+            // Negative on both sides, and smooth through infinity.
+            if v.abs() > 1e8 {
+                -1.0
+            } else {
+                (1.0 - v) * (1.0 + v) / (1.0 + v * v)
+            }
+        };
+        let down = if s.z > self.z { -out.z } else { out.z };
+        (p, t, [down, side(0), side(1)])
+    }
+}
+
+/// Conditions under which an exact ray lands on the floor.
+pub(in crate::bandwidth) const LANDING: usize = 3;
+/// Where they stand among the margins.
+const FIRST: usize = MARGINS - LANDING;
+
+/// A caustic at a floor point.
+pub(in crate::bandwidth) struct Connection<'a> {
+    caustic: &'a Caustic,
+    x: Vec3<f64>,
+    receiver: Receiver,
+    technique: Technique,
+    profile: &'a Profile,
+    edges: Vec<f64>,
+    spans: Vec<f64>,
+    plane: Option<Plane>,
+    link: Option<Link>,
+}
+
+/// Distances on the floor as levels q/(q + S²), q the squared distance and S the size of the scene: unlike q itself they are
+/// smooth where a ray turns away from the floor.
+#[derive(Clone, Debug)]
+pub(super) struct Plane {
+    square: f64,
+    pub edges: Vec<f64>,
+    pub spans: Vec<f64>,
+}
+
+impl Plane {
+    pub fn new(profile: &Profile, size: f64) -> Self {
+        let spans: Vec<f64> = profile.levels().iter().map(|r| r * r).collect();
+        let square = size * size + spans.last().copied().unwrap_or(0.0);
+        Plane {
+            square,
+            edges: spans.iter().map(|q| q / (q + square)).collect(),
+            spans,
+        }
+    }
+
+    pub fn level(&self, [dx, dy]: [f64; 2]) -> (f64, [f64; 3]) {
+        let q = dx * dx + dy * dy;
+        (1.0 / (1.0 + self.square / q), [dx, dy, 0.0])
+    }
+}
+
+/// Squared chord of an angle: 4 sin²(g/2).
+fn squared_chord(g: f64) -> f64 {
+    let s = libm::sin(0.5 * g);
+    4.0 * s * s
+}
+
+impl<'a> Connection<'a> {
+    pub fn new(
+        caustic: &'a Caustic,
+        x: [f64; 2],
+        receiver: Receiver,
+        technique: Technique,
+        profile: &'a Profile,
+        link: Option<Link>,
+    ) -> Self {
+        let plane = (technique == Technique::Merge).then(|| Plane::new(profile, receiver.scale()));
+        let spans = match (&link, &plane) {
+            (_, Some(plane)) => plane.spans.clone(),
+            (Some(l), _) => vec![l.reach()],
+            _ => profile.levels().iter().map(|&g| squared_chord(g)).collect(),
+        };
+        let edges = match (&link, &plane) {
+            (_, Some(plane)) => plane.edges.clone(),
+            (Some(l), _) => vec![l.reach() * l.radius * l.radius],
+            _ => spans.clone(),
+        };
+        Connection {
+            caustic,
+            x: vec3(x[0], x[1], receiver.z),
+            receiver,
+            technique,
+            profile,
+            edges,
+            spans,
+            plane,
+            link,
+        }
+    }
+
+    /// Whether the path is built from the camera.
+    fn from_camera(&self) -> bool {
+        matches!(self.technique, Technique::Camera | Technique::Symmetric)
+    }
+}
+
+/// The exact continuation of a unit direction `d` that meets a surface with unit normal `n` on the side of −d; `index` is that
+/// of the other medium relative to this one. Direction, Fresnel factor, and a margin that is negative beyond the critical angle.
+fn refracted(d: Vec3<f64>, n: Vec3<f64>, index: f64) -> (Vec3<f64>, f64, f64) {
+    let c = -d.dot(n);
+    let q2 = index * index - (1.0 - c) * (1.0 + c);
+    let q = sqrt(q2);
+    // The tangential part of the wave vector is kept, its normal part is q.
+    let out = (d + n * (c - q)) * (1.0 / index);
+    (out, fresnel_transmittance(1.0, c, index, q), q2)
+}
+
+impl Integrand for Connection<'_> {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        self.caustic.surface.domain()
+    }
+
+    fn edges(&self) -> &[f64] {
+        &self.edges
+    }
+
+    fn spans(&self) -> &[f64] {
+        &self.spans
+    }
+
+    fn rounding(&self) -> f64 {
+        let size = match (&self.link, self.technique) {
+            (Some(l), _) => 1.0 + 10.0 / l.radius,
+            (None, Technique::Merge) => (1.0 + self.x.length()) / self.profile.end,
+            _ => 1.0 / sqrt(self.spans.last().copied().unwrap_or(1.0)),
+        };
+        8.0 * f64::EPSILON * (1.0 + size)
+    }
+
+    fn node(&self, u: [f64; 2]) -> Node {
+        let Caustic {
+            source,
+            surface,
+            interaction,
+            photons,
+        } = self.caustic;
+        let Vertex {
+            point: s,
+            normal,
+            area,
+            margins: own,
+        } = surface.vertex(u);
+        let to_x = self.x - s;
+        let r1 = to_x.length();
+        let to_x = to_x * (1.0 / r1);
+        let (to_light, r2, strength) = match source {
+            Source::Point(y, intensity) => {
+                let v = *y - s;
+                let r2 = v.length();
+                (v * (1.0 / r2), r2, intensity / (r2 * r2))
+            }
+            Source::Beam(d, irradiance) => (-*d, f64::INFINITY, *irradiance),
+        };
+        // The normal points to the light's side.
+        let c2 = to_light.dot(normal);
+        let side = match interaction {
+            Interaction::Mirror(_) => 1.0,
+            Interaction::Interface(_) => -1.0,
+        };
+        let c1 = side * to_x.dot(normal);
+        let cx = if s.z > self.x.z { -to_x.z } else { to_x.z };
+        let common = strength * cx * area / (r1 * r1);
+
+        let mut margins = [1.0; MARGINS];
+        margins[..3].copy_from_slice(&own);
+        margins[3] = c2;
+        margins[4] = c1;
+        margins[5] = cx;
+        let legs = Legs {
+            to_light,
+            r2,
+            to_x,
+            r1,
+        };
+        let [near, far] = surface.free(&s, &normal, &legs);
+        margins[6] = near;
+        margins[7] = far;
+
+        // The exact continuation of the light, where it is asked for.
+        let exact = |margins: &mut [f64; MARGINS]| match interaction {
+            Interaction::Mirror(r) => (reflect(-to_light, normal), *r),
+            Interaction::Interface(index) => {
+                let (out, t, inside) = refracted(-to_light, normal, *index);
+                margins[8] = inside;
+                (out, t)
+            }
+        };
+        if let Some(plane) = &self.plane {
+            // A photon needs no connection: only the light's leg and its own to the floor.
+            let (out, scale) = exact(&mut margins);
+            let (p, t, landing) = self.receiver.landing(&s, &out);
+            margins[4] = 1.0;
+            margins[5] = 1.0;
+            margins[FIRST..].copy_from_slice(&landing);
+            let legs = Legs {
+                to_x: out,
+                r1: t,
+                ..legs
+            };
+            [margins[6], margins[7]] = surface.free(&s, &normal, &legs);
+            let (level, deflection) = plane.level([p[0] - self.x.x, p[1] - self.x.y]);
+            let flux = strength * c2 * area * scale;
+            return Node {
+                level,
+                least: f64::NAN,
+                deflection,
+                density: [flux, flux * photons * scale],
+                distance: 0.0,
+                margins,
+            };
+        }
+        let (difference, density) = if self.from_camera() {
+            let (out, scale) = match interaction {
+                Interaction::Mirror(r) => (reflect(-to_x, normal), *r),
+                Interaction::Interface(index) => {
+                    let (out, t, inside) = refracted(-to_x, -normal, 1.0 / index);
+                    margins[8] = inside;
+                    (out, t * index * index)
+                }
+            };
+            let (mut cosine, mut sample) = (c1, PI * scale * strength);
+            if self.technique == Technique::Symmetric && side > 0.0 {
+                cosine = sqrt(c1 * c2);
+                sample *= sqrt(c2 / c1);
+            }
+            let w = common * scale * cosine;
+            (out - to_light, [w, w * sample])
+        } else {
+            let (out, scale) = exact(&mut margins);
+            let w = common * scale * c2;
+            let sample = photons * scale * cx / (r1 * r1);
+            (out - to_x, [w, w * sample])
+        };
+        let mut level = difference.length_squared();
+        // Across the normal the exact direction is n times the incident one, also beyond the critical angle.
+        let least = match (interaction, self.from_camera()) {
+            (Interaction::Interface(index), true) => {
+                let d = to_x * *index + to_light;
+                let across = d - normal * d.dot(normal);
+                across.length_squared()
+            }
+            _ => f64::NAN,
+        };
+        let (mut deflection, mut distance) = (difference, 0.0);
+        if let Some(link) = &self.link {
+            let (out, _) = exact(&mut margins);
+            distance = link.distance(&self.receiver, &s, &out, [r1, r2], &mut margins);
+            // The support is D² < k B² with the squared band B² = 4 sin²(α/2) (von Mises–Fisher: α²), tan α = r κ, κ = 1/d: even
+            // in κ, so that D² − k B² is smooth where the ray turns away from the floor.
+            let tangent = link.radius / distance;
+            let band = match link.kernel {
+                Kernel::VonMisesFisher => {
+                    let alpha = libm::atan(tangent);
+                    alpha * alpha
+                }
+                _ => {
+                    let secant = hypot(1.0, tangent);
+                    2.0 * tangent * tangent / (secant * (secant + 1.0))
+                }
+            };
+            level += link.reach() * (link.radius * link.radius - band);
+            deflection = difference * (1.0 / sqrt(band));
+        }
+        Node {
+            level,
+            least,
+            deflection: deflection.to_f64(),
+            density,
+            distance,
+            margins,
+        }
+    }
+
+    fn kernel(&self, ring: usize, node: &Node) -> [f64; 2] {
+        let Some(link) = &self.link else {
+            let length = sqrt(node.square());
+            let g = if self.plane.is_some() {
+                length
+            } else {
+                2.0 * asin((0.5 * length).min(1.0))
+            };
+            return self.profile.in_ring(ring, g);
+        };
+        let alpha = atan2(link.radius, node.distance);
+        // D²/B².
+        let ratio = node.square();
+        let phi = match link.kernel {
+            Kernel::VonMisesFisher => {
+                let (k, n) = von_mises_fisher(alpha);
+                n * exp(-0.5 * k * ratio * alpha * alpha)
+            }
+            Kernel::Epanechnikov => {
+                let chord = 2.0 * libm::sin(0.5 * alpha) * sqrt(ratio);
+                let t = 2.0 * asin((0.5 * chord).min(1.0)) / alpha;
+                epanechnikov_height(alpha) * (1.0 - t * t)
+            }
+            _ => cone_height(alpha),
+        };
+        [phi, phi * phi]
+    }
+}
+
+impl Link {
+    /// The end of the kernel as D²/B²: beyond k(1 − cos g) = 40, that is D² = 80/k = 20 α², nothing is left.
+    fn reach(&self) -> f64 {
+        match self.kernel {
+            Kernel::VonMisesFisher => 20.0,
+            _ => 1.0,
+        }
+    }
+
+    /// The distance d, with the conditions of landing (or of the first that fails) as margins.
+    fn distance(
+        &self,
+        receiver: &Receiver,
+        s: &Vec3<f64>,
+        out: &Vec3<f64>,
+        [r1, r2]: [f64; 2],
+        margins: &mut [f64; MARGINS],
+    ) -> f64 {
+        match self.convention {
+            Convention::Vertex => return r1,
+            Convention::Light => return r2,
+            Convention::Exact => {}
+        }
+        let (_, t, conditions) = receiver.landing(s, out);
+        match self.escapes {
+            None => {
+                margins[FIRST..].copy_from_slice(&conditions);
+                t
+            }
+            Some(k) => {
+                margins[FIRST..FIRST + k].copy_from_slice(&conditions[..k]);
+                margins[FIRST + k] = -conditions[k];
+                receiver.escape.unwrap_or(f64::INFINITY)
+            }
+        }
+    }
+}

@@ -1,0 +1,391 @@
+//! Specular surfaces as two-parameter families of points.
+
+use core::fmt::Debug;
+
+use libm::{cos, sin, sqrt};
+
+use crate::vector::{Vec3, vec3};
+
+/// A point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Vertex {
+    /// The point [m].
+    pub point: Vec3<f64>,
+    /// Unit normal on the side of the light.
+    pub normal: Vec3<f64>,
+    /// Area per parameter area.
+    pub area: f64,
+    /// Non-negative on the surface, negative beyond its edges.
+    pub margins: [f64; 3],
+}
+
+/// A mirror or an interface.
+pub(in crate::bandwidth) trait Surface: Debug + Send + Sync {
+    /// Rectangle of the parameters.
+    fn domain(&self) -> [[f64; 2]; 2];
+
+    /// The point of a pair of parameters: smooth.
+    fn vertex(&self, u: [f64; 2]) -> Vertex;
+
+    /// Margins of the leg towards the light and of that towards the receiver: negative where another part of the surface is
+    /// in the way. Of a surface that sees itself nowhere both are 1.
+    fn free(&self, _s: &Vec3<f64>, _normal: &Vec3<f64>, _legs: &Legs) -> [f64; 2] {
+        [1.0; 2]
+    }
+}
+
+/// The two legs of a path from a vertex: unit directions and lengths [m].
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Legs {
+    pub to_light: Vec3<f64>,
+    /// Infinite for parallel light.
+    pub r2: f64,
+    pub to_x: Vec3<f64>,
+    pub r1: f64,
+}
+
+impl Legs {
+    fn map(&self, f: impl Fn(&Vec3<f64>, f64) -> f64) -> [f64; 2] {
+        [f(&self.to_light, self.r2), f(&self.to_x, self.r1)]
+    }
+}
+
+/// A margin that holds where any of the conditions does; smooth but where the best of them changes. An infinitely long leg never
+/// ends before it is stopped.
+fn any(conditions: &[f64]) -> f64 {
+    conditions.iter().copied().fold(-1.0, |best, c| {
+        let c = c.clamp(-1.0, 1.0);
+        if c > best { c } else { best }
+    })
+}
+
+/// The part of a sphere within an angle of an axis, by its normal in stereographic projection from the other pole: algebraic,
+/// and the pole is a point like any other.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct SphereCap {
+    pub center: Vec3<f64>,
+    pub radius: f64,
+    /// Two unit vectors across the axis, and the axis.
+    pub frame: [Vec3<f64>; 3],
+    /// −1 where the light is inside, 1 where it is outside.
+    pub side: f64,
+    /// tan of half the angle of the rim.
+    pub rim: f64,
+}
+
+/// Two unit vectors across a unit vector, and that vector.
+pub(in crate::bandwidth) fn frame_of(axis: Vec3<f64>) -> [Vec3<f64>; 3] {
+    let least = if f64::abs(axis.x) < 0.6 {
+        vec3(1.0, 0.0, 0.0)
+    } else {
+        vec3(0.0, 1.0, 0.0)
+    };
+    let across = (least - axis * least.dot(axis)).normalized();
+    [across, axis.cross(across), axis]
+}
+
+impl Surface for SphereCap {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-self.rim, self.rim]; 2]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        let square = u[0] * u[0] + u[1] * u[1];
+        let k = 1.0 / (1.0 + square);
+        let [e1, e2, axis] = self.frame;
+        let n = e1 * (2.0 * u[0] * k) + e2 * (2.0 * u[1] * k) + axis * ((1.0 - square) * k);
+        let scale = 2.0 * self.radius * k;
+        Vertex {
+            point: self.center + n * self.radius,
+            normal: n * self.side,
+            area: scale * scale,
+            margins: [self.rim * self.rim - square, 1.0, 1.0],
+        }
+    }
+
+    fn free(&self, s: &Vec3<f64>, normal: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
+        if self.side > 0.0 {
+            return [1.0; 2];
+        }
+        // Inside, both legs meet the sphere again after a chord; they are free where that is off the cap, or behind the end.
+        let rim = self.rim * self.rim;
+        let cos_rim = (1.0 - rim) / (1.0 + rim);
+        legs.map(|d, length| {
+            let chord = 2.0 * self.radius * d.dot(*normal);
+            let again = *s + *d * chord;
+            let off = cos_rim - (again - self.center).dot(self.frame[2]) / self.radius;
+            any(&[off, chord - length])
+        })
+    }
+}
+
+/// A vertical wall over an arc of a circle, or part of it, by azimuth and height.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Cylinder {
+    /// Axis (x, y) [m].
+    pub center: [f64; 2],
+    pub radius: f64,
+    /// −1 where the light is inside, 1 where it is outside.
+    pub side: f64,
+    /// Range of azimuths [rad].
+    pub azimuth: [f64; 2],
+    pub height: f64,
+    /// Whether what leaves the inner side meets the wall again only over |azimuth| ≤ this; 0 where it never does.
+    pub half_arc: f64,
+}
+
+impl Surface for Cylinder {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [self.azimuth, [0.0, self.height]]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        let n = vec3(cos(u[0]), sin(u[0]), 0.0);
+        Vertex {
+            point: vec3(
+                self.center[0] + self.radius * n.x,
+                self.center[1] + self.radius * n.y,
+                u[1],
+            ),
+            normal: n * self.side,
+            area: self.radius,
+            margins: [1.0; 3],
+        }
+    }
+
+    fn free(&self, s: &Vec3<f64>, normal: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
+        if self.side > 0.0 || self.half_arc == 0.0 {
+            return [1.0; 2];
+        }
+        let edge = cos(self.half_arc);
+        legs.map(|d, length| {
+            let plan = d.x * d.x + d.y * d.y;
+            // Ray parameter of the second meeting with the circle, and the height there.
+            let t = 2.0 * self.radius * (d.x * normal.x + d.y * normal.y) / plan;
+            let along = (s.x + d.x * t - self.center[0]) / self.radius;
+            any(&[edge - along, s.z + d.z * t - self.height, t - length])
+        })
+    }
+}
+
+/// The unbounded plane z = `height`, by directions towards it from a point at a distance, in stereographic projection: smooth up to
+/// the horizon.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Level {
+    pub height: f64,
+    /// Under or over the point [m].
+    pub center: [f64; 2],
+    /// Its distance [m].
+    pub distance: f64,
+    /// 1 where the light is above, −1 where it is below.
+    pub side: f64,
+}
+
+impl Surface for Level {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-1.0, 1.0]; 2]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        let square = u[0] * u[0] + u[1] * u[1];
+        let gap = 1.0 - square;
+        let scale = 2.0 * self.distance / gap;
+        let [x, y] = self.center;
+        Vertex {
+            point: vec3(x + scale * u[0], y + scale * u[1], self.height),
+            normal: vec3(0.0, 0.0, self.side),
+            area: scale * scale * (1.0 + square) / gap,
+            margins: [gap, 1.0, 1.0],
+        }
+    }
+}
+
+/// A rectangle, by its two edges; one that goes below the floor is cut there by the receiver's cosine.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct Rectangle {
+    pub center: Vec3<f64>,
+    /// Half of both edges [m], at right angles.
+    pub half: [Vec3<f64>; 2],
+    /// Unit normal on the side of the light.
+    pub normal: Vec3<f64>,
+}
+
+impl Surface for Rectangle {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-1.0, 1.0]; 2]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        Vertex {
+            point: self.center + self.half[0] * u[0] + self.half[1] * u[1],
+            normal: self.normal,
+            area: self.half[0].length() * self.half[1].length(),
+            margins: [1.0; 3],
+        }
+    }
+}
+
+/// A height field over the plane: (u, v) is the point below (or above) it.
+pub(in crate::bandwidth) struct HeightField<F> {
+    pub domain: [[f64; 2]; 2],
+    /// 1 where the light is above, −1 where it is below.
+    pub side: f64,
+    /// Height [m], its gradient, and margins of the edges.
+    pub height: F,
+    /// Of a mirror z = v − r²/(4f) about a vertical axis: axis, f, inner and outer radius, by which its legs are checked.
+    pub dish: Option<([f64; 2], f64, [f64; 2])>,
+}
+
+impl<F> Debug for HeightField<F> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("HeightField")
+            .field("domain", &self.domain)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<F: Fn([f64; 2]) -> (f64, [f64; 2], [f64; 2]) + Send + Sync> Surface for HeightField<F> {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        self.domain
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        let (z, [gx, gy], [m0, m1]) = (self.height)(u);
+        let area = sqrt(1.0 + gx * gx + gy * gy);
+        Vertex {
+            point: vec3(u[0], u[1], z),
+            normal: vec3(-gx, -gy, 1.0) * (self.side / area),
+            area,
+            margins: [m0, m1, 1.0],
+        }
+    }
+
+    fn free(&self, s: &Vec3<f64>, _: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
+        let Some(([cx, cy], f, [inner, outer])) = self.dish else {
+            return [1.0; 2];
+        };
+        legs.map(|d, length| {
+            let (x, y) = (s.x - cx, s.y - cy);
+            let plan = d.x * d.x + d.y * d.y;
+            let t = -(4.0 * f * d.z + 2.0 * (x * d.x + y * d.y)) / plan;
+            let (x, y) = (x + d.x * t, y + d.y * t);
+            let square = x * x + y * y;
+            let off = square - outer * outer;
+            let through = inner * inner - square;
+            any(&[off, through, t - length, -t])
+        })
+    }
+}
+
+/// A conic of revolution about the vertical through a focus, by the direction from it, in stereographic projection from below:
+/// |P| (α + β cos θ) = p, θ from the vertical.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct FocalConic {
+    pub focus: Vec3<f64>,
+    /// p [m].
+    pub parameter: f64,
+    /// α: 1, or −1 for the far sheet of a hyperboloid.
+    pub alpha: f64,
+    /// β: the eccentricity, negative if the focus is the far one.
+    pub beta: f64,
+    /// −1 where the light is on the side of the focus, 1 where it is outside.
+    pub side: f64,
+    /// tan of half the angle of the rim, seen from the focus.
+    pub rim: f64,
+    /// Height and radius of the rim [m].
+    pub rim_at: [f64; 2],
+    /// Whether an opaque screen around the rim stops what passes beside it.
+    pub screen: bool,
+}
+
+impl Surface for FocalConic {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-self.rim, self.rim]; 2]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        let square = u[0] * u[0] + u[1] * u[1];
+        let k = 1.0 / (1.0 + square);
+        let d = vec3(2.0 * u[0] * k, 2.0 * u[1] * k, (1.0 - square) * k);
+        let slope = self.alpha + self.beta * d.z;
+        let r = self.parameter / slope;
+        let gradient = d * self.alpha + vec3(0.0, 0.0, self.beta);
+        let norm = gradient.length();
+        Vertex {
+            point: self.focus + d * r,
+            normal: gradient * (self.side / norm),
+            // dA = r² dΩ/cos.
+            area: 4.0 * k * k * r * r * norm / slope,
+            margins: [self.rim * self.rim - square, 1.0, 1.0],
+        }
+    }
+
+    fn free(&self, s: &Vec3<f64>, _: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
+        let p = *s - self.focus;
+        let [z, radius] = self.rim_at;
+        if self.screen {
+            let t = (z - s.z) / legs.to_x.z;
+            let (x, y) = (p.x + legs.to_x.x * t, p.y + legs.to_x.y * t);
+            return [1.0, radius * radius - x * x - y * y];
+        }
+        if self.alpha < 0.0 {
+            return [1.0; 2];
+        }
+        let r = p.length();
+        legs.map(|d, length| {
+            let b = self.beta * d.z;
+            let t = -2.0 * (p.dot(*d) + r * b) / ((1.0 - b) * (1.0 + b));
+            any(&[z - (s.z + d.z * t), t - length, -t])
+        })
+    }
+}
+
+/// A vertical wall over the arc r = p/(1 + e cos θ), |θ| ≤ half arc, about a focus, lit from inside; by θ and height.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bandwidth) struct ConicWall {
+    pub focus: [f64; 2],
+    /// Unit vector towards θ = 0.
+    pub axis: [f64; 2],
+    pub parameter: f64,
+    pub eccentricity: f64,
+    pub half_arc: f64,
+    pub height: f64,
+}
+
+impl Surface for ConicWall {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        [[-self.half_arc, self.half_arc], [0.0, self.height]]
+    }
+
+    fn vertex(&self, u: [f64; 2]) -> Vertex {
+        let ([ax, ay], e) = (self.axis, self.eccentricity);
+        let (c, s) = (cos(u[0]), sin(u[0]));
+        let (dx, dy) = (ax * c - ay * s, ay * c + ax * s);
+        let slope = 1.0 + e * c;
+        let r = self.parameter / slope;
+        let (gx, gy) = (dx + e * ax, dy + e * ay);
+        let norm = sqrt(gx * gx + gy * gy);
+        Vertex {
+            point: vec3(self.focus[0] + dx * r, self.focus[1] + dy * r, u[1]),
+            normal: vec3(-gx / norm, -gy / norm, 0.0),
+            area: r * norm / slope,
+            margins: [1.0; 3],
+        }
+    }
+
+    fn free(&self, s: &Vec3<f64>, _: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
+        let ([ax, ay], e) = (self.axis, self.eccentricity);
+        let p = [s.x - self.focus[0], s.y - self.focus[1]];
+        let r = libm::hypot(p[0], p[1]);
+        let end = cos(self.half_arc);
+        legs.map(|d, length| {
+            let plan = d.x * d.x + d.y * d.y;
+            let along = e * (d.x * ax + d.y * ay);
+            // The second meeting of the line with the conic in plan; both are on the same branch if t > 0.
+            let t = -2.0 * (p[0] * d.x + p[1] * d.y + r * along) / (plan - along * along);
+            let (x, y) = (p[0] + d.x * t, p[1] + d.y * t);
+            let off = end * libm::hypot(x, y) - (x * ax + y * ay);
+            any(&[off, s.z + d.z * t - self.height, t - length, -t])
+        })
+    }
+}

@@ -1,0 +1,278 @@
+//! Expectations at points of the floor of any catalogue or user entry.
+
+use core::f64::consts::PI;
+use std::sync::Arc;
+
+use super::chart::connection::{Caustic, Connection, LANDING, Link, Receiver, Source};
+use super::chart::merging::Merging;
+use super::chart::{integrate, scenes};
+use super::kernel::Profile;
+use super::quadrature::Pair;
+use super::{Bounded, Convention, Kernel, Moments, Technique, check};
+use crate::class::{Chain, PathClass};
+use crate::entries;
+use crate::flux::Bundle;
+use crate::kinds::flat_interface::FlatInterface;
+use crate::kinds::sphere_mirror::SphereMirror;
+use crate::scene::{Entry, InvalidParameter};
+
+/// An estimator of the irradiance that a floor receives through specular surfaces, and its exact moments, per path class.
+#[derive(Clone, Debug)]
+pub struct EntryExpectation {
+    classes: Vec<Class>,
+    receiver: Receiver,
+    technique: Technique,
+    kernel: Kernel,
+    convention: Convention,
+    bandwidths: Vec<f64>,
+    profile: Profile,
+}
+
+/// Which estimator: a technique and a kernel, averaged over a list of bandwidths (one, or a schedule).
+#[derive(Clone, Copy, Debug)]
+pub struct Estimator<'a> {
+    /// The technique.
+    pub technique: Technique,
+    /// The kernel.
+    pub kernel: Kernel,
+    /// How a linked bandwidth is found; of no meaning otherwise.
+    pub convention: Convention,
+    /// Angles [rad], or radii [m] for `Merge` and `Linked`.
+    pub bandwidths: &'a [f64],
+}
+
+/// Light of one class.
+#[derive(Clone, Debug)]
+struct Class {
+    class: PathClass,
+    /// What is connected through a mollified vertex.
+    caustics: Vec<Caustic>,
+    /// What lands on the floor.
+    bundles: Vec<Arc<dyn Bundle>>,
+    /// Flux of all photons [W].
+    photons: f64,
+}
+
+impl EntryExpectation {
+    /// Prepares an estimator for an entry.
+    ///
+    /// Second moments are those of one sample with the densities of `theory/bandwidth.md` section 2. `beam_area` is the
+    /// cross-section [m²] over which the photons of parallel light are uniform.
+    ///
+    /// # Errors
+    /// What [`Entry::validate`] and [`check`] find; a kind of which the technique has no expectation here.
+    pub fn new(
+        entry: &Entry,
+        estimator: Estimator<'_>,
+        beam_area: f64,
+    ) -> Result<Self, InvalidParameter> {
+        entry.validate()?;
+        let technique = estimator.technique;
+        check(technique, estimator.kernel, estimator.bandwidths)?;
+        if estimator.convention == Convention::Light
+            && technique == Technique::Linked
+            && scenes::is_beam(&entry.kind)
+        {
+            return Err(InvalidParameter {
+                key: "convention".to_owned(),
+                found: estimator.convention.name().to_owned(),
+                allowed: "exact, vertex (parallel light is infinitely far away)".to_owned(),
+            });
+        }
+        let unknown = || InvalidParameter {
+            key: "kind".to_owned(),
+            found: entry.kind.name().to_owned(),
+            allowed: format!(
+                "a kind with an expectation at finite bandwidth for the technique {technique}"
+            ),
+        };
+        let floor = entry.kind.floor().ok_or_else(unknown)?;
+        let receiver = Receiver {
+            center: floor.center,
+            half_width: floor.half_width,
+            z: 0.0,
+            size: 1.0,
+            escape: scenes::diagonal(&entry.kind),
+        };
+        let mut classes = Vec::new();
+        let mut bundles = entries::form(&entry.kind).bundles().unwrap_or_default();
+        // The classes that end on the floor, however they are seen.
+        let mut ends: Vec<PathClass> = Vec::new();
+        for class in entry.kind.classes() {
+            let seen = PathClass {
+                eye: Chain::EMPTY,
+                ..*class
+            };
+            if !ends.contains(&seen) {
+                ends.push(seen);
+            }
+        }
+        for (position, &class) in ends.iter().enumerate() {
+            if class.light.is_empty() {
+                continue;
+            }
+            // Any number of interactions can be merged; what is connected is mollified at one vertex.
+            let caustics = scenes::caustics(&entry.kind, class, beam_area);
+            let bundles = match (bundles.get_mut(position), &caustics) {
+                (Some(b), None) if technique == Technique::Merge => core::mem::take(b),
+                _ => Vec::new(),
+            };
+            let caustics = caustics.unwrap_or_default();
+            if caustics.is_empty() && bundles.is_empty() {
+                return Err(unknown());
+            }
+            classes.push(Class {
+                class,
+                caustics,
+                bundles,
+                photons: scenes::photons(&entry.kind, beam_area).ok_or_else(unknown)?,
+            });
+        }
+        Ok(Self::of(classes, receiver, estimator))
+    }
+
+    fn of(classes: Vec<Class>, receiver: Receiver, estimator: Estimator<'_>) -> Self {
+        let Estimator {
+            technique,
+            kernel,
+            convention,
+            bandwidths,
+        } = estimator;
+        EntryExpectation {
+            classes,
+            receiver,
+            technique,
+            kernel,
+            convention,
+            bandwidths: bandwidths.to_vec(),
+            profile: match technique {
+                Technique::Linked => Profile::default(),
+                Technique::Merge => Profile::new(kernel, false, bandwidths),
+                _ => Profile::new(kernel, true, bandwidths),
+            },
+        }
+    }
+
+    /// The light of a spherical mirror on an unbounded receiver; `None` for parallel light.
+    ///
+    /// # Errors
+    /// What [`check`] finds.
+    pub fn of_sphere(
+        mirror: &SphereMirror<f64>,
+        estimator: Estimator<'_>,
+    ) -> Result<Option<Self>, InvalidParameter> {
+        Self::unbounded(scenes::sphere(mirror), mirror.receiver_z, estimator)
+    }
+
+    /// The light refracted by a flat interface onto an unbounded receiver; `None` where it is reflected.
+    ///
+    /// # Errors
+    /// What [`check`] finds.
+    pub fn of_interface(
+        form: &FlatInterface<f64>,
+        estimator: Estimator<'_>,
+    ) -> Result<Option<Self>, InvalidParameter> {
+        Self::unbounded(scenes::interface(form), form.receiver_z, estimator)
+    }
+
+    fn unbounded(
+        caustic: Option<Caustic>,
+        z: f64,
+        estimator: Estimator<'_>,
+    ) -> Result<Option<Self>, InvalidParameter> {
+        check(estimator.technique, estimator.kernel, estimator.bandwidths)?;
+        let receiver = Receiver {
+            center: [0.0; 2],
+            half_width: [f64::INFINITY; 2],
+            z,
+            size: 1.0,
+            escape: None,
+        };
+        Ok(caustic.map(|caustic| {
+            let class = Class {
+                class: PathClass::LSDE,
+                photons: caustic.photons,
+                caustics: vec![caustic],
+                bundles: Vec::new(),
+            };
+            Self::of(vec![class], receiver, estimator)
+        }))
+    }
+
+    /// The classes `L S+ D` in the order in which everything here lists them, each as the class that is seen directly.
+    pub fn classes(&self) -> Vec<PathClass> {
+        self.classes.iter().map(|c| c.class).collect()
+    }
+
+    /// Moments of the irradiance [W/m², (W/m²)²] at the floor point (x, y, 0), per class, to a relative tolerance.
+    ///
+    /// **Accuracy**: as stated in the error bounds, which are estimates: the size of the last two orders of every interpolant,
+    /// and rounding of the parameters at the kernel's edge.
+    pub fn at(&self, x: f64, y: f64, tolerance: f64) -> Vec<Moments> {
+        self.classes
+            .iter()
+            .map(|c| self.of_class(c, [x, y], tolerance.clamp(1e-13, 0.1)))
+            .collect()
+    }
+
+    fn of_class(&self, class: &Class, x: [f64; 2], tolerance: f64) -> Moments {
+        let mut sum = Pair::default();
+        let mut weighted = true;
+        for bundle in &class.bundles {
+            let merging = Merging::new(bundle, self.receiver, x, &self.profile, class.photons);
+            weighted &= merging.is_weighted();
+            sum.add(&integrate(&merging, tolerance));
+        }
+        if !weighted {
+            (sum.value[1], sum.error[1]) = (f64::NAN, f64::INFINITY);
+        }
+        for caustic in &class.caustics {
+            let connect = |link| {
+                let c = Connection::new(
+                    caustic,
+                    x,
+                    self.receiver,
+                    self.technique,
+                    &self.profile,
+                    link,
+                );
+                integrate(&c, tolerance)
+            };
+            if self.technique != Technique::Linked {
+                sum.add(&connect(None));
+                continue;
+            }
+            let share = 1.0 / self.bandwidths.len() as f64;
+            for &radius in &self.bandwidths {
+                let link = |escapes| Link {
+                    convention: self.convention,
+                    radius,
+                    kernel: self.kernel,
+                    escapes,
+                };
+                sum.add(&connect(Some(link(None))).scaled(share));
+                if self.convention == Convention::Exact && self.receiver.escape.is_some() {
+                    for k in 0..LANDING {
+                        sum.add(&connect(Some(link(Some(k)))).scaled(share));
+                    }
+                }
+            }
+        }
+        let bounded = |k: usize| Bounded {
+            value: sum.value[k],
+            error: sum.error[k] + 16.0 * f64::EPSILON * sum.value[k],
+        };
+        Moments {
+            mean: bounded(0),
+            second_moment: bounded(1),
+        }
+    }
+}
+
+/// The flux of the photons of a source [W].
+pub(super) fn photons(source: &Source, beam_area: f64) -> f64 {
+    match source {
+        Source::Point(_, intensity) => 4.0 * PI * intensity,
+        Source::Beam(_, irradiance) => irradiance * beam_area,
+    }
+}
