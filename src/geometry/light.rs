@@ -22,6 +22,9 @@ pub trait Light: Copy + Send + Sync + 'static {
     /// cross-section that covers the targets from a directional one.
     fn unaimed(&self, targets: &[DVec3]) -> Self::Emitter;
 
+    /// The same where nothing that stands in the photons' way is higher than `highest` [m].
+    fn spread(&self, targets: &[DVec3], highest: f64) -> Self::Emitter;
+
     /// Direction from a point towards the light (not normalised) and the ray parameter of the light along it.
     fn towards(&self, point: DVec3) -> (DVec3, f64);
 
@@ -52,6 +55,10 @@ impl Light for Point {
     }
 
     fn unaimed(&self, _: &[DVec3]) -> Cap {
+        self.everywhere()
+    }
+
+    fn spread(&self, _: &[DVec3], _: f64) -> Cap {
         self.everywhere()
     }
 
@@ -89,6 +96,10 @@ impl Light for Directional {
 
     fn unaimed(&self, targets: &[DVec3]) -> Beam {
         self.towards_hull(targets)
+    }
+
+    fn spread(&self, targets: &[DVec3], highest: f64) -> Beam {
+        self.beam(targets, highest)
     }
 
     #[inline(always)]
