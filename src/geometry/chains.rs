@@ -40,6 +40,9 @@ pub struct Vertex {
 
 /// Specular surfaces over the floor, none of which is between the camera and the floor that it sees.
 pub trait Chains: Copy + Send + Sync + 'static {
+    /// Whether an interaction of unspecified kind, `S`, next to the light is a refraction.
+    const REFRACTS: bool = false;
+
     /// The classes of the light that reaches the floor, one for each chain: direct light too, where it exists.
     fn classes(&self) -> &'static [PathClass];
 

@@ -141,9 +141,17 @@ impl Chains for Conic {
     fn bounds(&self) -> Option<[DVec3; 2]> {
         let (a, [low, high]) = (self.semi_axis, self.range);
         // An ellipsoid ends at its top, the upper sheet of a hyperboloid begins at its bottom.
-        let (low, high) = if self.across > 0.0 { (low, a) } else { (a, high) };
+        let (low, high) = if self.across > 0.0 {
+            (low, a)
+        } else {
+            (a, high)
+        };
         // The ellipsoid is widest in its middle, the hyperboloid at its rim.
-        let at = if self.across > 0.0 { low.max(0.0) } else { high };
+        let at = if self.across > 0.0 {
+            low.max(0.0)
+        } else {
+            high
+        };
         let wide = f64::sqrt((a * a - at * at) / self.across);
         Some([
             self.center + DVec3::new(-wide, -wide, low),

@@ -43,13 +43,7 @@ impl GlassPillar {
     }
 
     /// The way through the glass with `reflections` inside.
-    fn through(
-        &self,
-        point: DVec3,
-        normal: DVec3,
-        d: DVec3,
-        reflections: usize,
-    ) -> Option<Vertex> {
+    fn through(&self, point: DVec3, normal: DVec3, d: DVec3, reflections: usize) -> Option<Vertex> {
         let (mut d, reflectance) = refract(d, normal, self.index);
         let mut weight = 1.0 - reflectance;
         let (mut point, mut normal) = self.across(point, d)?;

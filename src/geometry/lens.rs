@@ -70,6 +70,8 @@ impl Lens {
 }
 
 impl Chains for Lens {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

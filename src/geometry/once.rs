@@ -12,6 +12,8 @@ use super::specular::Specular;
 pub struct Once<S>(pub S);
 
 impl<S: Specular> Chains for Once<S> {
+    const REFRACTS: bool = S::SEPARATES;
+
     fn classes(&self) -> &'static [PathClass] {
         match (S::EXISTS, S::SEPARATES) {
             (false, _) => &[PathClass::LDE],

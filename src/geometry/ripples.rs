@@ -203,6 +203,8 @@ impl<'a> Ray<'a> {
 }
 
 impl Chains for Ripples {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

@@ -54,6 +54,8 @@ impl Slab {
 }
 
 impl Chains for Slab {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

@@ -29,6 +29,8 @@ impl Underwater {
 }
 
 impl Chains for Underwater {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

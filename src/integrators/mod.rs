@@ -20,6 +20,7 @@ mod photon_mapping;
 mod plan;
 mod pm;
 mod ppm;
+pub mod probes;
 mod pt;
 mod pt_reg;
 mod regularized_chains;

@@ -178,7 +178,6 @@ impl<L: Light, S: Specular, D: Deviation> PhotonMapping<L, S, D> {
         }
         work.photons.x.len() as f64 / (PILOT as f64 * work.photons.area())
     }
-
 }
 
 /// Photons for a map, from their density per photon traced.

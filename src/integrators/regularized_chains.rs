@@ -76,8 +76,8 @@ impl<L: Light, S: Chains> RegularizedChains<L, S> {
         let light = to_light(scene, &vertex, kernel.support)?;
         let (towards, _) = scene.light.towards(vertex.point);
         let irradiance = defect.falloff(light.irradiance, towards);
-        let deviations = defect.beside_own_cosine(direction.z)
-            * defect.at_specular(direction, vertex.direction);
+        let deviations =
+            defect.beside_own_cosine(direction.z) * defect.at_specular(direction, vertex.direction);
         Some(vertex.weight * irradiance * kernel.density(light.squared_chord) * deviations)
     }
 }
