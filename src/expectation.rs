@@ -8,11 +8,16 @@
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Bounded, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, InvalidParameter};
+use nephroid_analytic::scene::{Entry, InvalidParameter, Kind};
 use rayon::prelude::*;
 
 /// The image is integrated in this many strips of rows (fewer if it has fewer rows), whatever the number of threads.
 const STRIPS: u32 = 16;
+
+/// Whether there are expectations at finite bandwidth for a kind. What regularizes is not judged on the others.
+pub fn is_known(kind: &Kind) -> bool {
+    matches!(kind, Kind::Diffuse(_) | Kind::PlanarMirror(_))
+}
 
 /// Mean over the whole image of the radiance [W m⁻² sr⁻¹] of each regularized class, and the second moment of one sample
 /// of it (one camera sample uniform on the film, one sample of the estimator), averaged over the bandwidths: angles [rad],

@@ -7,8 +7,9 @@
 //!
 //! The part is found by a search over nested widths of the kernel, from one that many paths meet down to a quarter more
 //! than what is asked for. At each step cells that contain a contribution are kept with their eight neighbours, and
-//! quartered where there are few. A support that narrows with its width cannot be lost unless a piece of it is cut off so
-//! finely that 16 points a cell, with neighbours, miss it: by an edge of a surface, and then its part of the light is as small.
+//! quartered until there are many, before the kernel narrows. A support that narrows with its width cannot be lost unless a
+//! piece of it is cut off so finely that 16 points a cell, with neighbours, miss it: by an edge of a surface, and then its
+//! part of the light is as small.
 //!
 //! The search works on a chart of the unit square without poles, in which cells are never needles: a disc of directions
 //! about each pole becomes a square by the concentric map of [Shirley & Chiu 1997], which keeps areas.
@@ -85,8 +86,8 @@ const FIRST: u32 = 7;
 const LAST: u32 = 28;
 /// Points per side of a cell.
 const POINTS: u32 = 4;
-/// No more cells than this are quartered.
-const QUARTERED: usize = 3000;
+/// Fewer cells than this are quartered.
+const MANY: usize = 1000;
 /// The width at the end of the search, in units of what is asked for.
 const MARGIN: f64 = 1.25;
 
@@ -184,17 +185,17 @@ pub(super) fn search<'a>(
     };
     loop {
         part = part.hit(&hits(width));
-        let few = part.cells.len() <= QUARTERED && part.level < LAST && !part.is_empty();
-        if width <= last && !few {
-            return part;
-        }
-        width = if 0.5 * width > last {
-            0.5 * width
-        } else {
-            last
-        };
-        if few {
+        let few = !part.is_empty() && part.cells.len() < MANY;
+        if few && part.level < LAST {
             part = part.quartered();
+        } else if width <= last || part.is_empty() {
+            return part;
+        } else {
+            width = if 0.5 * width > last {
+                0.5 * width
+            } else {
+                last
+            };
         }
     }
 }

@@ -87,6 +87,12 @@ impl<L: Light, S: Chains> Sampler<L, S> {
         }
     }
 
+    /// Keeps one class alone.
+    pub(super) fn keep(&mut self, class: PathClass) {
+        let all = self.scene.surface.classes();
+        self.chains.retain(|&chain| all[chain] == class);
+    }
+
     /// `None` where parallel light reaches the point from an unbounded part of the surface.
     fn state(&self, bandwidth: f64, x: DVec3) -> Option<State<L>> {
         let width = self.width(bandwidth);
