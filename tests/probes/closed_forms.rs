@@ -40,22 +40,20 @@ const POINTS: [(&str, &str, [f64; 2]); 34] = [
     ("hyperboloid", "LSDE", [0.134_96, -0.044_66]),
     ("lens", "LSDE", [0.105_603, 0.095_639]),
     ("glass-ball", "LRDE", [0.874_665, 0.891_291]),
-    ("glass-ball", "LTTDE", [-1.240_335, -1.108_708]),
+    ("glass-ball", "LTTDE", [-1.140_335, -1.008_708]),
     ("glass-ball", "LTRRTDE", [0.109_664, 0.141_291]),
 ];
 
 /// Angle [rad] and radius [m].
 const BANDWIDTH: f64 = 0.004;
-fn paths() -> u64 {
-    std::env::var("PATHS").map_or(60_000, |p| p.parse().unwrap())
-}
-/// What the bias at this bandwidth may be: the largest at these points is a quarter of a percent of E, by the same
-/// estimators with 3·10⁷ paths.
-const BIAS: f64 = 0.01;
+const PATHS: u64 = 60_000;
+/// What the bias at this bandwidth may be. With 2·10⁶ paths it is at most 0.2 % of E at all of these points (standard error
+/// 0.1 %), and 0.3 % at the ellipsoid's, which is next to a focus.
+const BIAS: f64 = 0.005;
 /// Standard errors: 2e-9 of a false alarm for each of 102 figures, 2e-7 for all.
 const ERRORS: f64 = 6.0;
 
-/// It would catch a bias of 1 % and 6 standard errors, 4.5 % in the worst case: any wrong factor (a forgotten transmittance
+/// It would catch a bias of half a percent and 6 standard errors, 5 % in the worst case: any wrong factor (a forgotten transmittance
 /// of a glass surface is 4 %, n² is 77 %), a leg through a surface, a class that takes another's paths.
 #[test]
 fn every_class_of_every_kind_tends_to_the_closed_form() {
@@ -76,12 +74,12 @@ fn every_class_of_every_kind_tends_to_the_closed_form() {
             let estimator = Estimator::of_class(&entry, technique, kernel, None, class).unwrap();
             assert_eq!(estimator.classes(), [class]);
             let aim = estimator.aim(BANDWIDTH, point).unwrap();
-            let run = estimator.run_aimed(5, 0, paths(), BANDWIDTH, point, &aim);
+            let run = estimator.run_aimed(5, 0, PATHS, BANDWIDTH, point, &aim);
             let sums = run.unwrap()[0];
             let (mean, error) = (sums.mean() / irradiance, sums.standard_error() / irradiance);
             let name = technique.name();
             println!("{scene} {class} {name}: {mean:.4} ± {error:.4}");
-            if !(error < 0.006) {
+            if !(error < 0.0075) {
                 failures.push(format!("{scene} {class} {name}: too weak, ± {error}"));
             }
             if !((mean - 1.0).abs() < BIAS + ERRORS * error) {

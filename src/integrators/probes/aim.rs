@@ -81,13 +81,13 @@ pub(super) struct Part {
 }
 
 /// Level of the first grid.
-const FIRST: u32 = 7;
+const FIRST: u32 = 8;
 /// Level of the finest grid.
 const LAST: u32 = 28;
 /// Points per side of a cell.
 const POINTS: u32 = 4;
 /// Fewer cells than this are quartered.
-const MANY: usize = 1000;
+const MANY: usize = 4000;
 /// The width at the end of the search, in units of what is asked for.
 const MARGIN: f64 = 1.25;
 
