@@ -5,13 +5,11 @@ use nephroid::integrators::Kernel;
 use nephroid::integrators::probes::{Estimator, Technique};
 use nephroid_analytic::entries::FloorTruth;
 
-/// A floor point for each class at which its irradiance is smooth: found as the points of a grid at which the mean over 16
+/// A floor point for each class (of chains that differ in their length alone, for the shortest and the longest) at which its irradiance is smooth: found as the points of a grid at which the mean over 16
 /// neighbours differs least from the value.
-const POINTS: [(&str, &str, [f64; 2]); 35] = [
+const POINTS: [(&str, &str, [f64; 2]); 29] = [
     ("mirror-wall", "LSDE", [0.2437, 0.6391]),
     ("corner", "LSDE", [1.514_665, 0.366_429]),
-    ("corner", "LSSDE", [4.079_665, 1.240_429]),
-    ("corner", "LSSSDE", [4.079_665, 1.240_429]),
     ("corner", "LSSSSDE", [4.079_665, 1.240_429]),
     ("cup", "LSDE", [0.292_44, 0.044_313]),
     ("cup-rim", "LSDE", [-0.477_953, 0.233_31]),
@@ -20,8 +18,6 @@ const POINTS: [(&str, &str, [f64; 2]); 35] = [
     ("deep-cup", "LSSSDE", [-0.7985, 0.32]),
     ("pillar", "LSDE", [-0.985_04, -1.194_81]),
     ("conic-wall", "LSDE", [0.634_343, -0.436_54]),
-    ("glass-pillar", "LRDE", [-0.855_236, 1.580_853]),
-    ("glass-pillar", "LTTDE", [0.504_763, -0.072_48]),
     ("glass-column", "LRDE", [-1.598_458, 2.684_988]),
     ("glass-column", "LTTDE", [0.693_208, 1.803_321]),
     ("glass-column", "LTRTDE", [-1.473_458, 0.729_988]),
@@ -30,8 +26,6 @@ const POINTS: [(&str, &str, [f64; 2]); 35] = [
     ("underwater", "LSDE", [0.344_343, 0.248_823]),
     ("ripple-pool", "LSDE", [0.421_43, -0.299_146]),
     ("slab", "LSSDE", [0.434_96, -0.264_66]),
-    ("slab", "LSSSSDE", [-2.205_04, 1.202_006]),
-    ("slab", "LSSSSSSDE", [-0.045_04, 1.642_006]),
     ("slab", "LSSSSSSSSDE", [-0.845_04, -1.511_326]),
     ("dome", "LSDE", [-0.905_04, -0.437_993]),
     ("ball", "LSDE", [-1.813_163, -1.062_63]),
@@ -48,11 +42,11 @@ const POINTS: [(&str, &str, [f64; 2]); 35] = [
 
 /// Angle [rad] and radius [m].
 const BANDWIDTH: f64 = 0.004;
-const PATHS: u64 = 60_000;
+const PATHS: u64 = 80_000;
 /// What the bias at this bandwidth may be. With 2·10⁶ paths it is at most 0.2 % of E at all of these points (standard error
 /// 0.1 %), and 0.3 % at the ellipsoid's, which is next to a focus.
 const BIAS: f64 = 0.005;
-/// Standard errors: 2e-9 of a false alarm for each of 105 figures, 2e-7 for all.
+/// Standard errors: 2e-9 of a false alarm for each of 87 figures, 2e-7 for all.
 const ERRORS: f64 = 6.0;
 
 /// It would catch a bias of half a percent and 6 standard errors, 5 % in the worst case: any wrong factor (a forgotten transmittance
