@@ -5,8 +5,8 @@ use nephroid::integrators::Kernel;
 use nephroid::integrators::probes::{Estimator, Technique};
 use nephroid_analytic::entries::FloorTruth;
 
-/// A floor point for each class (of chains that differ in their length alone, for the shortest and the longest) at which its irradiance is smooth: found as the points of a grid at which the mean over 16
-/// neighbours differs least from the value.
+/// A floor point for each class at which its irradiance is smooth: found as the points of a grid at which the mean over 16
+/// neighbours differs least from the value. Of chains that differ in their length alone, the shortest and the longest.
 const POINTS: [(&str, &str, [f64; 2]); 29] = [
     ("mirror-wall", "LSDE", [0.2437, 0.6391]),
     ("corner", "LSDE", [1.514_665, 0.366_429]),

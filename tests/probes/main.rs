@@ -6,4 +6,5 @@ mod contract;
 mod films;
 mod interfaces;
 mod mirrors;
+mod reversal;
 mod sums;
