@@ -8,7 +8,7 @@
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Bounded, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, InvalidParameter};
+use nephroid_analytic::scene::{Entry, InvalidParameter, Kind};
 use rayon::prelude::*;
 
 use crate::mosaic::{Mosaic, Rectangle};
@@ -18,6 +18,11 @@ use crate::regions::Regions;
 /// several are added up, not in quadrature, which makes up for it as their number grows: the factor on the estimate for so many.
 fn allowance(rectangles: usize) -> f64 {
     (4.0 / libm::sqrt(rectangles as f64)).max(1.0)
+}
+
+/// Whether there are expectations at finite bandwidth for a kind. What regularizes is not judged on the others.
+pub fn is_known(kind: &Kind) -> bool {
+    matches!(kind, Kind::Diffuse(_) | Kind::PlanarMirror(_))
 }
 
 /// Mean over the whole image of the radiance [W m⁻² sr⁻¹] of each regularized class, and the second moment of one sample
