@@ -153,14 +153,15 @@ impl EntryExpectation {
         }
     }
 
-    /// The light of a spherical mirror on an unbounded receiver; `None` for parallel light.
+    /// The light of a spherical mirror on an unbounded receiver. The photons of parallel light are uniform over the sphere's
+    /// cross-section.
     ///
     /// # Errors
     /// What [`check`] finds.
     pub fn of_sphere(
         mirror: &SphereMirror<f64>,
         estimator: Estimator<'_>,
-    ) -> Result<Option<Self>, InvalidParameter> {
+    ) -> Result<Self, InvalidParameter> {
         Self::unbounded(scenes::sphere(mirror), mirror.receiver_z, estimator)
     }
 
@@ -172,14 +173,16 @@ impl EntryExpectation {
         form: &FlatInterface<f64>,
         estimator: Estimator<'_>,
     ) -> Result<Option<Self>, InvalidParameter> {
-        Self::unbounded(scenes::interface(form), form.receiver_z, estimator)
+        scenes::interface(form)
+            .map(|caustic| Self::unbounded(vec![caustic], form.receiver_z, estimator))
+            .transpose()
     }
 
     fn unbounded(
-        caustic: Option<Caustic>,
+        caustics: Vec<Caustic>,
         z: f64,
         estimator: Estimator<'_>,
-    ) -> Result<Option<Self>, InvalidParameter> {
+    ) -> Result<Self, InvalidParameter> {
         check(estimator.technique, estimator.kernel, estimator.bandwidths)?;
         let receiver = Receiver {
             center: [0.0; 2],
@@ -188,15 +191,13 @@ impl EntryExpectation {
             size: 1.0,
             escape: None,
         };
-        Ok(caustic.map(|caustic| {
-            let class = Class {
-                class: PathClass::LSDE,
-                photons: caustic.photons,
-                caustics: vec![caustic],
-                bundles: Vec::new(),
-            };
-            Self::of(vec![class], receiver, estimator)
-        }))
+        let class = Class {
+            class: PathClass::LSDE,
+            photons: caustics.first().map_or(0.0, |c| c.photons),
+            caustics,
+            bundles: Vec::new(),
+        };
+        Ok(Self::of(vec![class], receiver, estimator))
     }
 
     /// The classes `L S+ D` in the order in which everything here lists them, each as the class that is seen directly.

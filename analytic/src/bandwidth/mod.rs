@@ -19,6 +19,7 @@ mod clip;
 mod cubature;
 pub mod entry;
 pub mod film;
+pub mod flatland;
 mod hits;
 mod kernel;
 mod linked;

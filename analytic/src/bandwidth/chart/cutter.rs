@@ -217,10 +217,10 @@ impl<I: Integrand> Cutter<'_, I> {
                     continue;
                 }
                 let kernel = self.integrand.kernel(ring, &node);
-                for k in 0..2 {
-                    let v = f64::abs(node.density[k] * kernel[k] * area);
+                for (most, (d, k)) in most.iter_mut().zip(node.density.iter().zip(kernel)) {
+                    let v = f64::abs(d * k * area);
                     if v.is_finite() {
-                        most[k] = most[k].max(v);
+                        *most = most.max(v);
                     }
                 }
             }
