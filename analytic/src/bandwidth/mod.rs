@@ -20,6 +20,7 @@ mod cubature;
 pub mod entry;
 pub mod film;
 pub mod flatland;
+pub mod frame;
 mod hits;
 mod kernel;
 mod linked;

@@ -21,8 +21,14 @@ const DEEPEST: u32 = 72;
 const DARK: u32 = 12;
 /// Cells looked at, at most.
 const MOST: usize = 40_000;
+/// Halvings after which pieces that carry less than this part of the tolerance are left out.
+const SMALL: u32 = 16;
+const NEGLIGIBLE: f64 = 1e-5;
 /// What an interpolant misses, in units of its last two orders.
 const REMAINDER: f64 = 6.0;
+
+/// The integrand at the nodes of a piece, `[b][a]`, with the area of parameters per area of the chart.
+type Samples = [[(Node, f64); N]; N];
 
 /// A piece to be looked at.
 #[derive(Clone, Debug)]
@@ -65,28 +71,37 @@ impl Ord for Leaf {
 
 struct Cutter<'a, I> {
     integrand: &'a I,
+    /// How well curves are known, in half widths of a cell.
+    fit: f64,
     /// Largest absolute value of each margin in a first look: the scale of its rounding.
     scales: [f64; MARGINS],
     queue: VecDeque<Task>,
     leaves: Vec<Leaf>,
     /// Of pieces that were left undecided.
     lost: [f64; 2],
+    /// What the leaves carry, and the part of it below which an undecided piece is left out.
+    carried: [f64; 2],
+    negligible: f64,
     looks: usize,
 }
 
-/// ∫∫ of the integrand over rectangles of parameters, to `tolerance × |value + others|`.
-pub(super) fn integrate<I: Integrand>(
+/// ∫∫ of the integrand over rectangles of parameters, to `tolerance × max(|value + others|, floor)`.
+pub(in crate::bandwidth) fn integrate<I: Integrand>(
     integrand: &I,
     rectangles: &[[[f64; 2]; 2]],
     tolerance: f64,
     others: [f64; 2],
+    floor: [f64; 2],
 ) -> Pair {
     let mut cutter = Cutter {
         integrand,
+        fit: border::EXACT.max(0.02 * tolerance),
         scales: [1.0; MARGINS],
         queue: VecDeque::new(),
         leaves: Vec::new(),
         lost: [0.0; 2],
+        carried: others.map(f64::abs),
+        negligible: NEGLIGIBLE * tolerance,
         looks: 0,
     };
     let whole = integrand.domain();
@@ -117,7 +132,7 @@ pub(super) fn integrate<I: Integrand>(
         }
     }
     cutter.drain();
-    cutter.refine(tolerance, others)
+    cutter.refine(tolerance, others, floor)
 }
 
 impl<I: Integrand> Cutter<'_, I> {
@@ -130,8 +145,8 @@ impl<I: Integrand> Cutter<'_, I> {
         const M: u32 = 8;
         let at = |k: u32| (2.0 * f64::from(k) + 1.0) / f64::from(M) - 1.0;
         for k in 0..M * M {
-            let (node, _) = self.node(chart, [at(k % M), at(k / M)]);
-            for (scale, g) in self.scales.iter_mut().zip(node.margins) {
+            let (u, _) = chart.at([at(k % M), at(k / M)]);
+            for (scale, g) in self.scales.iter_mut().zip(self.integrand.margins(u)) {
                 if f64::abs(g) > *scale && g.is_finite() {
                     *scale = f64::abs(g);
                 }
@@ -151,12 +166,14 @@ impl<I: Integrand> Cutter<'_, I> {
     }
 
     /// Halves the worst leaves until all errors together are small enough.
-    fn refine(&mut self, tolerance: f64, others: [f64; 2]) -> Pair {
+    fn refine(&mut self, tolerance: f64, others: [f64; 2], floor: [f64; 2]) -> Pair {
         let mut total = Pair::default();
         for leaf in &self.leaves {
             total.add(&leaf.pair);
         }
-        let target = |total: &Pair, k: usize| tolerance * (total.value[k] + others[k]).abs();
+        let target = |total: &Pair, k: usize| {
+            tolerance * (total.value[k] + others[k]).abs().max(floor[k])
+        };
         let urgency = |pair: &Pair, total: &Pair| {
             (0..2)
                 .map(|k| pair.error[k] / target(total, k).max(f64::MIN_POSITIVE))
@@ -205,29 +222,36 @@ impl<I: Integrand> Cutter<'_, I> {
 
     /// Leaves a piece out: what it can carry, from the samples that exist, becomes an error.
     fn lose(&mut self, task: &Task) {
+        let x = nodes();
+        let samples: Samples = core::array::from_fn(|l| {
+            core::array::from_fn(|k| self.node(&task.chart, [x[k], x[l]]))
+        });
+        let most = self.most(task, &samples);
+        self.leave(most);
+    }
+
+    fn leave(&mut self, most: [f64; 2]) {
+        for (lost, most) in self.lost.iter_mut().zip(most) {
+            *lost += 4.0 * most;
+        }
+    }
+
+    /// The largest integrand per chart area at the nodes, as if kernel and path existed at all of them.
+    fn most(&self, task: &Task, samples: &Samples) -> [f64; 2] {
+        let edges = self.integrand.edges();
         let mut most = [0.0_f64; 2];
-        for b in nodes() {
-            for a in nodes() {
-                let (node, area) = self.node(&task.chart, [*a, *b]);
-                let reached = self.integrand.edges().iter().position(|e| node.level < *e);
-                let Some(ring) = task.ring.or(reached) else {
-                    continue;
-                };
-                if node.margins.iter().any(|m| !(*m >= 0.0)) {
-                    continue;
-                }
-                let kernel = self.integrand.kernel(ring, &node);
-                for (most, (d, k)) in most.iter_mut().zip(node.density.iter().zip(kernel)) {
-                    let v = f64::abs(d * k * area);
-                    if v.is_finite() {
-                        *most = most.max(v);
-                    }
+        for (node, area) in samples.iter().flatten() {
+            let reached = edges.iter().position(|e| node.level < *e);
+            let ring = task.ring.or(reached).unwrap_or(edges.len() - 1);
+            let kernel = self.integrand.kernel(ring, node);
+            for (most, (d, k)) in most.iter_mut().zip(node.density.iter().zip(kernel)) {
+                let v = f64::abs(d * k * area);
+                if v.is_finite() {
+                    *most = most.max(v);
                 }
             }
         }
-        for k in 0..2 {
-            self.lost[k] += 4.0 * most[k];
-        }
+        most
     }
 
     fn halve(&mut self, task: Task, axis: usize) {
@@ -246,7 +270,7 @@ impl<I: Integrand> Cutter<'_, I> {
 
     fn visit(&mut self, mut task: Task) {
         let x = nodes();
-        let samples: [[(Node, f64); N]; N] = core::array::from_fn(|l| {
+        let samples: Samples = core::array::from_fn(|l| {
             core::array::from_fn(|k| self.node(&task.chart, [x[k], x[l]]))
         });
         let grid = |f: &dyn Fn(&Node) -> f64| -> Grid {
@@ -295,6 +319,11 @@ impl<I: Integrand> Cutter<'_, I> {
                 continue;
             }
             let g = grid(&|n| n.margins[m]);
+            // Conditions that a surface does not have.
+            if g[0][0] > 0.0 && g.iter().flatten().all(|v| *v == g[0][0]) {
+                task.settled |= 1 << m;
+                continue;
+            }
             if !finite(&g) {
                 dark |= task.depth >= DARK && g.iter().flatten().all(|v| !(*v >= 0.0));
                 unknown = unknown.or(Some((m, g, None)));
@@ -315,13 +344,20 @@ impl<I: Integrand> Cutter<'_, I> {
         if dark && mixed.is_none() {
             return;
         }
+        if task.depth >= SMALL && (level.is_some() || mixed.is_some() || unknown.is_some()) {
+            let most = self.most(&task, &samples);
+            if (0..2).all(|k| 4.0 * most[k] < self.negligible * self.carried[k]) {
+                self.leave(most);
+                return;
+            }
+        }
         // A kernel that is much smaller than the cell is approached by halving; what it does not reach is never cut.
         if let Some((edge, g, c)) = level {
             self.cut_kernel(task, edge, &g, &c);
             return;
         }
         if let Some((m, g, c)) = mixed.or(unknown) {
-            let value = |chart: &Chart, p: [f64; 2]| self.node(chart, p).0.margins[m];
+            let value = |chart: &Chart, p: [f64; 2]| self.integrand.margins(chart.at(p).0)[m];
             let found = border::find(
                 &task.chart,
                 &g,
@@ -329,6 +365,7 @@ impl<I: Integrand> Cutter<'_, I> {
                 task.depth,
                 self.scales[m],
                 true,
+                self.fit,
                 &value,
             );
             self.follow(&task, found, Some(m), None);
@@ -358,7 +395,7 @@ impl<I: Integrand> Cutter<'_, I> {
             let g: Grid = g.map(|row| row.map(|v| offset + sign * v));
             let c = c.combined(sign, c, 0.0, offset);
             let value = |chart: &Chart, p: [f64; 2]| offset + sign * self.node(chart, p).0.level;
-            match border::find(&task.chart, &g, Some(&c), task.depth, size, false, &value) {
+            match border::find(&task.chart, &g, Some(&c), task.depth, size, false, self.fit, &value) {
                 Border::Halve(axis) => {
                     self.halve(task, axis);
                     return;
@@ -399,7 +436,7 @@ impl<I: Integrand> Cutter<'_, I> {
         }
     }
 
-    fn keep(&mut self, task: Task, ring: usize, samples: &[[(Node, f64); N]; N]) {
+    fn keep(&mut self, task: Task, ring: usize, samples: &Samples) {
         let mut pair = Pair::default();
         let mut tails = [0.0; 2];
         for k in 0..2 {
@@ -417,9 +454,13 @@ impl<I: Integrand> Cutter<'_, I> {
             let c = Chebyshev::new(&g);
             let [p, q] = c.tails();
             pair.value[k] = c.integral();
-            pair.error[k] = 4.0 * (p + q);
+            // A curved end that is off by the fit changes the piece by as much.
+            pair.error[k] = 4.0 * (p + q) + (self.fit - border::EXACT) * f64::abs(pair.value[k]);
             let scale = c.c[0][0].abs().max(f64::MIN_POSITIVE);
             tails = [tails[0] + p / scale, tails[1] + q / scale];
+        }
+        for (carried, value) in self.carried.iter_mut().zip(pair.value) {
+            *carried += f64::abs(value);
         }
         self.leaves.push(Leaf {
             task,
