@@ -156,9 +156,9 @@ fn point(setting: &Setting, point: Object<'_>) -> Result<Item, Error> {
             e.error("technique", &format!("`{}`", u.found), &u.allowed)
         })?;
         let kernel: Kernel = if e.has("kernel") {
-            e.text("kernel")?
-                .parse()
-                .map_err(|u: UnknownName| e.error("kernel", &format!("`{}`", u.found), &u.allowed))?
+            e.text("kernel")?.parse().map_err(|u: UnknownName| {
+                e.error("kernel", &format!("`{}`", u.found), &u.allowed)
+            })?
         } else {
             technique.default_kernel()
         };
@@ -180,7 +180,11 @@ fn point(setting: &Setting, point: Object<'_>) -> Result<Item, Error> {
         })?;
         let moments = moments.ok_or_else(|| {
             let found = format!("`{technique}` with the kernel {kernel}");
-            e.error("technique", &found, "a technique that is defined in this scene")
+            e.error(
+                "technique",
+                &found,
+                "a technique that is defined in this scene",
+            )
         })?;
         let name = format!("{technique}.{kernel}.{bandwidth}");
         rows.add_as(&format!("{name}.E"), estimate(moments.mean), &e, "E")?;

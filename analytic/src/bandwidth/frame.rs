@@ -11,6 +11,7 @@
 //! floor's border and halved where the interpolants are worst; an image is covered with tiles of which each is one interpolant.
 
 use core::f64::consts::PI;
+use core::ops::Range;
 
 use super::chart::{Integrand, MARGINS, Node, integrate_over};
 use super::entry::{EntryExpectation, Estimator};
@@ -18,20 +19,18 @@ use super::{Bounded, Moments};
 use crate::camera::Film;
 use crate::class::PathClass;
 use crate::flux::poly::{Chebyshev, Grid, N, nodes, value};
-use crate::optics::{fresnel_transmittance, reflect};
+use crate::optics::fresnel_transmittance;
 use crate::pixel::rule::Rule;
 use crate::scene::{Entry, InvalidParameter, Kind};
-use crate::vector::{Vec3, vec3};
+use crate::vector::vec3;
 
 /// How the eye sees the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Eye {
-    /// Straight; with radius, height and cosine of the half arc of a wall about the z axis that hides what is behind it.
-    Direct(Option<[f64; 3]>),
+    /// Straight.
+    Direct,
     /// Through a flat surface at a height, into this index.
     Water { height: f64, index: f64 },
-    /// By the inner side of that wall, of this reflectance.
-    Wall { wall: [f64; 3], reflectance: f64 },
 }
 
 /// One class as it is seen.
@@ -66,11 +65,13 @@ impl FrameExpectation {
         beam_area: f64,
     ) -> Result<Self, InvalidParameter> {
         let expectation = EntryExpectation::new(entry, estimator, beam_area)?;
-        let unknown = || InvalidParameter {
+        let unknown = || {
+            InvalidParameter {
             key: "kind".to_owned(),
             found: entry.kind.name().to_owned(),
-            allowed: "a kind whose floor is seen directly, through flat water or in a round wall"
+            allowed: "a kind whose floor is seen directly or through flat water, with nothing in front of it"
                 .to_owned(),
+        }
         };
         let floor = entry.kind.floor().ok_or_else(unknown)?;
         let ends = expectation.classes();
@@ -107,14 +108,14 @@ impl FrameExpectation {
     }
 
     /// Moments of the radiance [W m⁻² sr⁻¹] of a class summed over the pixels of a rectangle, to `tolerance × max(|value|, floor)` where
-    /// `floor` are such sums, or nothing.
+    /// `floor` are such sums, or nothing; second moments to ten times that.
     ///
     /// **Accuracy**: as stated in the error bounds, which are estimates.
     pub fn region(
         &self,
         class: usize,
-        columns: core::ops::Range<u32>,
-        rows: core::ops::Range<u32>,
+        columns: Range<u32>,
+        rows: Range<u32>,
         tolerance: f64,
         floor: [f64; 2],
     ) -> Moments {
@@ -130,6 +131,7 @@ impl FrameExpectation {
             tolerance: 0.1 * tolerance,
             // A point may be as wrong as all of them on average.
             floor: floor.map(|f| f / area),
+            cells: if area > 1.0 { [2; 2] } else { [1; 2] },
         };
         let sum = integrate_over(&seen, &[domain], tolerance, [0.0; 2], floor);
         let bounded = |k: usize| Bounded {
@@ -150,8 +152,8 @@ impl FrameExpectation {
     pub fn pixels(
         &self,
         class: usize,
-        columns: core::ops::Range<u32>,
-        rows: core::ops::Range<u32>,
+        columns: Range<u32>,
+        rows: Range<u32>,
         tolerance: f64,
         floor: [f64; 2],
     ) -> Vec<Moments> {
@@ -159,19 +161,32 @@ impl FrameExpectation {
         let mut out = vec![Moments::default(); width * rows.len()];
         let (left, top) = (columns.start, rows.start);
         let mut tiles = vec![(columns, rows)];
+        let seen = Seen {
+            frame: self,
+            layer: &self.layers[class],
+            domain: [[0.0; 2]; 2],
+            tolerance: 0.1 * tolerance,
+            floor,
+            cells: [1; 2],
+        };
         while let Some((columns, rows)) = tiles.pop() {
             if columns.is_empty() || rows.is_empty() {
+                continue;
+            }
+            let done = match is_seen(&seen, &columns, &rows) {
+                Some(false) => true,
+                Some(true) => seen.tile(&columns, &rows, tolerance, floor, &mut |i, j, m| {
+                    out[(j - top) as usize * width + (i - left) as usize] = m;
+                }),
+                None => false,
+            };
+            if done {
                 continue;
             }
             if columns.len() == 1 && rows.len() == 1 {
                 let at = (rows.start - top) as usize * width + (columns.start - left) as usize;
                 out[at] = self.region(class, columns, rows, tolerance, floor);
-                continue;
-            }
-            let done = self.tile(class, &columns, &rows, tolerance, floor, &mut |i, j, m| {
-                out[(j - top) as usize * width + (i - left) as usize] = m;
-            });
-            if !done {
+            } else {
                 let (i, j) = (
                     columns.start + columns.len() as u32 / 2,
                     rows.start + rows.len() as u32 / 2,
@@ -186,58 +201,161 @@ impl FrameExpectation {
         out
     }
 
+    /// What the eye sees through a film point: the floor point, the weight on the way, and margins of its existence.
+    fn look(&self, eye: Eye, u: f64, v: f64) -> ([f64; 2], f64, [f64; 6]) {
+        let film = &self.film;
+        let (mut origin, mut d) = (film.position, film.direction(u, v));
+        let (mut weight, mut margins) = (1.0, [1.0; 6]);
+        match eye {
+            Eye::Direct => {}
+            Eye::Water { height, index } => {
+                let t = (height - origin.z) / d.z;
+                let at = origin + d * t;
+                let unit = d.normalized();
+                let c = -unit.z;
+                let q = libm::sqrt(index * index - (1.0 - c) * (1.0 + c));
+                margins[3] = c;
+                weight = fresnel_transmittance(1.0, c, index, q) / (index * index);
+                (origin, d) = (at, vec3(unit.x, unit.y, -q));
+            }
+        }
+        margins[5] = -d.z;
+        let t = origin.z / -d.z;
+        let p = [origin.x + d.x * t, origin.y + d.y * t];
+        for k in 0..2 {
+            let s = (p[k] - self.center[k]) / self.half_width[k];
+            // Negative on both sides, and smooth through infinity.
+            margins[k] = if s.abs() > 1e8 {
+                -1.0
+            } else {
+                (1.0 - s) * (1.0 + s) / (1.0 + s * s)
+            };
+        }
+        (p, weight, margins)
+    }
+}
+
+/// How a class is seen, where the image has no edges but the floor's.
+fn eye(kind: &Kind, class: PathClass) -> Option<Eye> {
+    match (kind, class.eye.len()) {
+        (Kind::PlanarMirror(_) | Kind::CylinderCup(_), _) => None,
+        (_, 0) => Some(Eye::Direct),
+        (Kind::FlatInterface(s), 1) => Some(Eye::Water {
+            height: s.water.surface_z,
+            index: s.water.index,
+        }),
+        _ => None,
+    }
+}
+
+fn padded(conditions: &[f64; 6]) -> [f64; MARGINS] {
+    let mut margins = [1.0; MARGINS];
+    margins[..conditions.len()].copy_from_slice(conditions);
+    margins
+}
+
+/// The radiance over the film.
+struct Seen<'a> {
+    frame: &'a FrameExpectation,
+    layer: &'a Layer,
+    domain: [[f64; 2]; 2],
+    tolerance: f64,
+    floor: [f64; 2],
+    cells: [u32; 2],
+}
+
+impl Integrand for Seen<'_> {
+    fn domain(&self) -> [[f64; 2]; 2] {
+        self.domain
+    }
+
+    fn edges(&self) -> &[f64] {
+        &[1.0]
+    }
+
+    fn spans(&self) -> &[f64] {
+        &[1.0]
+    }
+
+    fn rounding(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The light itself, which costs a thousand times as much as the margins, is left to [`Self::kernel`].
+    fn node(&self, u: [f64; 2]) -> Node {
+        Node {
+            level: 0.0,
+            least: f64::NAN,
+            deflection: [u[0], u[1], 0.0],
+            density: [1.0; 2],
+            distance: 0.0,
+            margins: self.margins(u),
+        }
+    }
+
+    /// Second moments are wanted for the sizes of samples.
+    fn slack(&self) -> [f64; 2] {
+        [1.0, 10.0]
+    }
+
+    fn margins(&self, [u, v]: [f64; 2]) -> [f64; MARGINS] {
+        padded(&self.frame.look(self.layer.eye, u, v).2)
+    }
+
+    fn kernel(&self, _: usize, node: &Node) -> [f64; 2] {
+        self.radiance(node.deflection[0], node.deflection[1])
+    }
+
+    fn coarse(&self) -> [u32; 2] {
+        self.cells
+    }
+}
+
+impl Seen<'_> {
+    /// Mean and second moment of the radiance at a film point.
+    fn radiance(&self, u: f64, v: f64) -> [f64; 2] {
+        let frame = self.frame;
+        let (x, weight, _) = frame.look(self.layer.eye, u, v);
+        let scale = weight * frame.brightness;
+        let floor = [self.floor[0] / scale, self.floor[1] / (scale * scale)];
+        let m = frame
+            .expectation
+            .of_class(self.layer.position, x, self.tolerance, floor);
+        [scale * m.mean.value, scale * scale * m.second_moment.value]
+    }
+
     /// All pixels of a tile by one interpolant, if that is good enough.
     fn tile(
         &self,
-        class: usize,
-        columns: &core::ops::Range<u32>,
-        rows: &core::ops::Range<u32>,
+        columns: &Range<u32>,
+        rows: &Range<u32>,
         tolerance: f64,
         floor: [f64; 2],
         put: &mut dyn FnMut(u32, u32, Moments),
     ) -> bool {
-        let low = [f64::from(columns.start), f64::from(rows.start)];
-        let size = [columns.len() as f64, rows.len() as f64];
-        let seen = Seen {
-            frame: self,
-            layer: &self.layers[class],
-            domain: [[0.0; 2]; 2],
-            tolerance: 0.1 * tolerance,
-            floor,
-        };
+        let (low, size) = corner_and_size(columns, rows);
         let at = |k: usize, a: f64| low[k] + 0.5 * size[k] * (1.0 + a);
-        // Margins are cheap: what they cut is not a tile, and what they exclude is dark.
-        let margins: Vec<_> = nodes()
-            .iter()
-            .flat_map(|b| nodes().iter().map(|a| [at(0, *a), at(1, *b)]))
-            .map(|u| seen.margins(u))
-            .collect();
-        for m in 0..MARGINS {
-            let grid: Grid = core::array::from_fn(|l| core::array::from_fn(|k| margins[l * N + k][m]));
-            if !grid.iter().flatten().all(|g| g.is_finite()) {
-                return false;
-            }
-            let c = Chebyshev::new(&grid);
-            let [p, q] = c.tails();
-            let spread = c.spread() + 6.0 * (p + q);
-            if c.c[0][0] < -spread {
-                return true;
-            }
-            if c.c[0][0] < spread {
-                return false;
-            }
-        }
         let values: Vec<[f64; 2]> = nodes()
             .iter()
             .flat_map(|b| nodes().iter().map(|a| [at(0, *a), at(1, *b)]))
-            .map(|u| seen.node(u).density)
+            .map(|u| self.radiance(u[0], u[1]))
             .collect();
         let fits = [0, 1].map(|k| {
             let grid = core::array::from_fn(|l| core::array::from_fn(|i| values[l * N + i][k]));
             Chebyshev::new(&grid)
         });
-        let errors = [0, 1].map(|k| fits[k].tails()[0] + fits[k].tails()[1]);
-        let good = (0..2).all(|k| errors[k] <= tolerance * f64::abs(fits[k].c[0][0]).max(floor[k]));
+        // A pixel of its own is an integral, of several each is about a value.
+        let single = columns.len() * rows.len() == 1;
+        let errors = fits.map(|c| {
+            if single {
+                0.25 * c.integral_error()
+            } else {
+                0.3 * (c.tails()[0] + c.tails()[1])
+            }
+        });
+        let good = (0..2).all(|k| {
+            errors[k] <= self.slack()[k] * tolerance * f64::abs(fits[k].c[0][0]).max(floor[k])
+        });
         if !good {
             return false;
         }
@@ -271,157 +389,40 @@ impl FrameExpectation {
         }
         true
     }
+}
 
-    /// What the eye sees through a film point: the floor point, the weight on the way, and margins of its existence.
-    fn look(&self, eye: Eye, u: f64, v: f64) -> ([f64; 2], f64, [f64; 6]) {
-        let film = &self.film;
-        let (mut origin, mut d) = (film.position, film.direction(u, v));
-        let (mut weight, mut margins) = (1.0, [1.0; 6]);
-        match eye {
-            Eye::Direct(None) => {}
-            Eye::Direct(Some(wall)) => {
-                let (t, free, _) = meeting(origin, d, wall);
-                let floor = origin.z / -d.z;
-                // It is hidden where the wall is met before the floor.
-                margins[3] = if free > 0.0 {
-                    free
-                } else {
-                    free.max((t - floor) / t)
-                };
-            }
-            Eye::Water { height, index } => {
-                let t = (height - origin.z) / d.z;
-                let at = origin + d * t;
-                let unit = d.normalized();
-                let c = -unit.z;
-                let q = libm::sqrt(index * index - (1.0 - c) * (1.0 + c));
-                margins[3] = c;
-                weight = fresnel_transmittance(1.0, c, index, q) / (index * index);
-                (origin, d) = (at, vec3(unit.x, unit.y, -q));
-            }
-            Eye::Wall { wall, reflectance } => {
-                let (t, free, normal) = meeting(origin, d, wall);
-                margins[3] = -free;
-                let at = origin + d * t;
-                margins[4] = at.z;
-                weight = reflectance;
-                (origin, d) = (at, reflect(d, normal));
-            }
+fn corner_and_size(columns: &Range<u32>, rows: &Range<u32>) -> ([f64; 2], [f64; 2]) {
+    (
+        [f64::from(columns.start), f64::from(rows.start)],
+        [columns.len() as f64, rows.len() as f64],
+    )
+}
+
+/// Whether all of a tile is in a part of the film, or nothing of it; `None` if neither is certain.
+fn is_seen(seen: &Seen<'_>, columns: &Range<u32>, rows: &Range<u32>) -> Option<bool> {
+    let (low, size) = corner_and_size(columns, rows);
+    let at = |k: usize, a: f64| low[k] + 0.5 * size[k] * (1.0 + a);
+    let margins: Vec<_> = nodes()
+        .iter()
+        .flat_map(|b| nodes().iter().map(|a| [at(0, *a), at(1, *b)]))
+        .map(|u| seen.margins(u))
+        .collect();
+    let mut all = Some(true);
+    for m in 0..MARGINS {
+        let grid: Grid = core::array::from_fn(|l| core::array::from_fn(|k| margins[l * N + k][m]));
+        if !grid.iter().flatten().all(|g| g.is_finite()) {
+            all = None;
+            continue;
         }
-        margins[5] = -d.z;
-        let t = origin.z / -d.z;
-        let p = [origin.x + d.x * t, origin.y + d.y * t];
-        for k in 0..2 {
-            let s = (p[k] - self.center[k]) / self.half_width[k];
-            // Negative on both sides, and smooth through infinity.
-            margins[k] = if s.abs() > 1e8 {
-                -1.0
-            } else {
-                (1.0 - s) * (1.0 + s) / (1.0 + s * s)
-            };
+        let c = Chebyshev::new(&grid);
+        let [p, q] = c.tails();
+        let spread = c.spread() + 6.0 * (p + q);
+        if c.c[0][0] < -spread {
+            return Some(false);
         }
-        (p, weight, margins)
-    }
-}
-
-/// Where a ray leaves the circle of a wall, how far from meeting it that is (negative where it does meet it), and the normal.
-fn meeting(o: Vec3<f64>, d: Vec3<f64>, [radius, height, edge]: [f64; 3]) -> (f64, f64, Vec3<f64>) {
-    let (a, b) = (d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y);
-    let c = o.x * o.x + o.y * o.y - radius * radius;
-    let t = (-b + libm::sqrt(b * b - a * c)) / a;
-    let at = o + d * t;
-    let normal = vec3(at.x / radius, at.y / radius, 0.0);
-    let free = (edge - normal.x).max((at.z - height) / radius);
-    // A ray that misses the circle misses the wall.
-    (t, if free.is_nan() { 1.0 } else { free }, normal)
-}
-
-fn eye(kind: &Kind, class: PathClass) -> Option<Eye> {
-    let wall = match kind {
-        Kind::CylinderCup(s) => Some([
-            s.wall.radius,
-            s.wall.height,
-            libm::cos(s.wall.half_arc_degrees.to_radians()),
-        ]),
-        _ => None,
-    };
-    match (kind, class.eye.len()) {
-        (Kind::PlanarMirror(_), _) => None,
-        (_, 0) => Some(Eye::Direct(wall)),
-        (Kind::FlatInterface(s), 1) => Some(Eye::Water {
-            height: s.water.surface_z,
-            index: s.water.index,
-        }),
-        (Kind::CylinderCup(s), 1) => wall.map(|wall| Eye::Wall {
-            wall,
-            reflectance: s.wall.reflectance,
-        }),
-        _ => None,
-    }
-}
-
-fn padded(conditions: &[f64; 6]) -> [f64; MARGINS] {
-    let mut margins = [1.0; MARGINS];
-    margins[..conditions.len()].copy_from_slice(conditions);
-    margins
-}
-
-/// The radiance over the film.
-struct Seen<'a> {
-    frame: &'a FrameExpectation,
-    layer: &'a Layer,
-    domain: [[f64; 2]; 2],
-    tolerance: f64,
-    floor: [f64; 2],
-}
-
-impl Integrand for Seen<'_> {
-    fn domain(&self) -> [[f64; 2]; 2] {
-        self.domain
-    }
-
-    fn edges(&self) -> &[f64] {
-        &[1.0]
-    }
-
-    fn spans(&self) -> &[f64] {
-        &[1.0]
-    }
-
-    fn rounding(&self) -> f64 {
-        self.tolerance
-    }
-
-    fn node(&self, [u, v]: [f64; 2]) -> Node {
-        let frame = self.frame;
-        let (x, weight, conditions) = frame.look(self.layer.eye, u, v);
-        let scale = weight * frame.brightness;
-        let mut density = [0.0; 2];
-        if conditions.iter().all(|m| *m >= -0.1) {
-            let floor = [self.floor[0] / scale, self.floor[1] / (scale * scale)];
-            let m = frame
-                .expectation
-                .of_class(self.layer.position, x, self.tolerance, floor);
-            density = [
-                scale * m.mean.value,
-                scale * scale * m.second_moment.value,
-            ];
-        }
-        Node {
-            level: 0.0,
-            least: f64::NAN,
-            deflection: [0.0; 3],
-            density,
-            distance: 0.0,
-            margins: padded(&conditions),
+        if !(c.c[0][0] > spread) {
+            all = None;
         }
     }
-
-    fn margins(&self, [u, v]: [f64; 2]) -> [f64; MARGINS] {
-        padded(&self.frame.look(self.layer.eye, u, v).2)
-    }
-
-    fn kernel(&self, _: usize, _: &Node) -> [f64; 2] {
-        [1.0; 2]
-    }
+    all
 }

@@ -23,7 +23,7 @@ const DARK: u32 = 12;
 const MOST: usize = 40_000;
 /// Halvings after which pieces that carry less than this part of the tolerance are left out.
 const SMALL: u32 = 16;
-const NEGLIGIBLE: f64 = 1e-5;
+const NEGLIGIBLE: f64 = 1e-4;
 /// What an interpolant misses, in units of its last two orders.
 const REMAINDER: f64 = 6.0;
 
@@ -36,8 +36,8 @@ struct Task {
     chart: Chart,
     /// Margins known to hold.
     settled: u32,
-    /// The ring of the kernel, once it is known.
-    ring: Option<usize>,
+    /// First and last ring of the kernel that it may touch: ring k is between the edges k - 1 and k, the last is beyond them all.
+    rings: [usize; 2],
     depth: u32,
 }
 
@@ -126,7 +126,7 @@ pub(in crate::bandwidth) fn integrate<I: Integrand>(
             cutter.queue.push_back(Task {
                 chart: chart.part(range),
                 settled: 0,
-                ring: None,
+                rings: [0, integrand.edges().len()],
                 depth: 0,
             });
         }
@@ -171,8 +171,9 @@ impl<I: Integrand> Cutter<'_, I> {
         for leaf in &self.leaves {
             total.add(&leaf.pair);
         }
+        let slack = self.integrand.slack();
         let target = |total: &Pair, k: usize| {
-            tolerance * (total.value[k] + others[k]).abs().max(floor[k])
+            tolerance * slack[k] * (total.value[k] + others[k]).abs().max(floor[k])
         };
         let urgency = |pair: &Pair, total: &Pair| {
             (0..2)
@@ -242,7 +243,11 @@ impl<I: Integrand> Cutter<'_, I> {
         let mut most = [0.0_f64; 2];
         for (node, area) in samples.iter().flatten() {
             let reached = edges.iter().position(|e| node.level < *e);
-            let ring = task.ring.or(reached).unwrap_or(edges.len() - 1);
+            let [first, last] = task.rings;
+            let ring = reached
+                .unwrap_or(edges.len())
+                .clamp(first, last)
+                .min(edges.len() - 1);
             let kernel = self.integrand.kernel(ring, node);
             for (most, (d, k)) in most.iter_mut().zip(node.density.iter().zip(kernel)) {
                 let v = f64::abs(d * k * area);
@@ -280,13 +285,15 @@ impl<I: Integrand> Cutter<'_, I> {
 
         // The kernel first: most of the parameters are out of its reach.
         let mut level = None;
-        if task.ring.is_none() {
+        let edges = self.integrand.edges();
+        let undecided = |rings: [usize; 2]| rings[0] < rings[1];
+        if undecided(task.rings) {
             let least = grid(&|n| n.least);
             if finite(&least) {
                 let c = Chebyshev::new(&least);
                 let [p, q] = c.tails();
                 let bottom = c.c[0][0] - c.spread() - REMAINDER * (p + q);
-                if self.integrand.edges().last().is_none_or(|e| bottom >= *e) {
+                if edges.last().is_none_or(|e| bottom >= *e) {
                     return;
                 }
             }
@@ -295,20 +302,21 @@ impl<I: Integrand> Cutter<'_, I> {
                 let c = Chebyshev::new(&g);
                 let [p, q] = c.tails();
                 let spread = c.spread() + REMAINDER * (p + q);
-                let edges = self.integrand.edges();
-                let within = |e: f64| e > c.c[0][0] - spread && e < c.c[0][0] + spread;
-                if edges.last().is_none_or(|e| c.c[0][0] - spread >= *e) {
-                    return;
+                for (k, e) in edges.iter().enumerate() {
+                    if c.c[0][0] - spread >= *e {
+                        task.rings[0] = task.rings[0].max(k + 1);
+                    } else if c.c[0][0] + spread <= *e {
+                        task.rings[1] = task.rings[1].min(k);
+                    }
                 }
-                let crossed: Vec<usize> = (0..edges.len()).filter(|&k| within(edges[k])).collect();
-                if crossed.is_empty() {
-                    task.ring = edges.iter().position(|e| c.c[0][0] < *e);
-                } else {
-                    level = Some((crossed[crossed.len() / 2], g, c));
+                if undecided(task.rings) {
+                    let middle = (task.rings[0] + task.rings[1] - 1) / 2;
+                    level = Some((middle, g, c));
                 }
-            } else {
-                level = None;
             }
+        }
+        if task.rings[0] >= edges.len() {
+            return;
         }
 
         // Margins: violated everywhere, satisfied everywhere, or neither. One that is not a number somewhere may be so because
@@ -368,21 +376,24 @@ impl<I: Integrand> Cutter<'_, I> {
                 self.fit,
                 &value,
             );
-            self.follow(&task, found, Some(m), None);
+            self.follow(&task, found, m);
             return;
         }
-        let Some(ring) = task.ring else {
+        if undecided(task.rings) {
             let axis = (task.depth % 2) as usize;
             self.halve(task, axis);
             return;
-        };
+        }
+        let ring = task.rings[0];
         self.keep(task, ring, &samples);
     }
 
     /// Cuts a piece along an edge of the kernel.
     fn cut_kernel(&mut self, task: Task, edge: usize, g: &Grid, c: &Chebyshev) {
-        let (edges, top) = (self.integrand.edges(), self.integrand.edges().len() - 1);
-        let at = edges[edge];
+        let (at, top) = (
+            self.integrand.edges()[edge],
+            self.integrand.edges().len() - 1,
+        );
         // Rounding of the level, in units of the edge.
         let size = 1.0 + self.integrand.rounding() / f64::EPSILON;
         let mut parts = Vec::new();
@@ -395,7 +406,17 @@ impl<I: Integrand> Cutter<'_, I> {
             let g: Grid = g.map(|row| row.map(|v| offset + sign * v));
             let c = c.combined(sign, c, 0.0, offset);
             let value = |chart: &Chart, p: [f64; 2]| offset + sign * self.node(chart, p).0.level;
-            match border::find(&task.chart, &g, Some(&c), task.depth, size, false, self.fit, &value) {
+            let depth = task.depth;
+            match border::find(
+                &task.chart,
+                &g,
+                Some(&c),
+                depth,
+                size,
+                false,
+                self.fit,
+                &value,
+            ) {
                 Border::Halve(axis) => {
                     self.halve(task, axis);
                     return;
@@ -403,30 +424,41 @@ impl<I: Integrand> Cutter<'_, I> {
                 Border::Parts(found) => parts.extend(found.into_iter().map(|p| (p, inside))),
             }
         }
-        // A single edge decides the ring; with several, the next look does.
         for ((chart, part), inside) in parts {
-            let decided = part != Part::Unknown && edges.len() == 1 && inside;
-            self.push(&task, chart, None, decided.then_some(0));
+            let [first, last] = task.rings;
+            let rings = match (part, inside) {
+                (Part::Unknown, _) => [first, last],
+                (_, true) => [first, edge],
+                (_, false) => [edge + 1, last],
+            };
+            self.push(
+                &Task {
+                    rings,
+                    ..task.clone()
+                },
+                chart,
+                None,
+            );
         }
     }
 
-    fn follow(&mut self, task: &Task, found: Border, margin: Option<usize>, ring: Option<usize>) {
+    fn follow(&mut self, task: &Task, found: Border, margin: usize) {
         match found {
             Border::Halve(axis) => self.halve(task.clone(), axis),
             Border::Parts(parts) => {
                 for (chart, part) in parts {
-                    let done = if part == Part::Unknown { None } else { margin };
-                    self.push(task, chart, done, ring);
+                    let done = (part != Part::Unknown).then_some(margin);
+                    self.push(task, chart, done);
                 }
             }
         }
     }
 
-    fn push(&mut self, task: &Task, chart: Chart, margin: Option<usize>, ring: Option<usize>) {
+    fn push(&mut self, task: &Task, chart: Chart, margin: Option<usize>) {
         let task = Task {
             chart,
             settled: task.settled | margin.map_or(0, |m| 1 << m),
-            ring: task.ring.or(ring),
+            rings: task.rings,
             depth: task.depth + 1,
         };
         if task.depth >= DEEPEST {
@@ -437,15 +469,33 @@ impl<I: Integrand> Cutter<'_, I> {
     }
 
     fn keep(&mut self, task: Task, ring: usize, samples: &Samples) {
+        let at = |l: usize, i: usize| {
+            let (node, area) = &samples[l][i];
+            let kernel = self.integrand.kernel(ring, node);
+            [0, 1].map(|k| node.density[k] * kernel[k] * area)
+        };
         let mut pair = Pair::default();
         let mut tails = [0.0; 2];
+        // Of a sliver beside a border one sample says enough.
+        if task.depth >= SMALL {
+            let middle = at(N / 2, N / 2).map(|v| 4.0 * v);
+            if (0..2).all(|k| f64::abs(middle[k]) < self.negligible * self.carried[k]) {
+                self.leaves.push(Leaf {
+                    task,
+                    pair: Pair {
+                        value: middle,
+                        error: middle.map(f64::abs),
+                    },
+                    axis: 0,
+                    urgency: 0.0,
+                });
+                return;
+            }
+        }
+        let values: [[[f64; 2]; N]; N] =
+            core::array::from_fn(|l| core::array::from_fn(|i| at(l, i)));
         for k in 0..2 {
-            let g: Grid = core::array::from_fn(|l| {
-                core::array::from_fn(|i| {
-                    let (node, area) = &samples[l][i];
-                    node.density[k] * self.integrand.kernel(ring, node)[k] * area
-                })
-            });
+            let g: Grid = values.map(|row| row.map(|v| v[k]));
             if !g.iter().flatten().all(|v| v.is_finite()) {
                 let axis = (task.depth % 2) as usize;
                 self.halve(task, axis);
@@ -455,7 +505,8 @@ impl<I: Integrand> Cutter<'_, I> {
             let [p, q] = c.tails();
             pair.value[k] = c.integral();
             // A curved end that is off by the fit changes the piece by as much.
-            pair.error[k] = 4.0 * (p + q) + (self.fit - border::EXACT) * f64::abs(pair.value[k]);
+            pair.error[k] =
+                c.integral_error() + (self.fit - border::EXACT) * f64::abs(pair.value[k]);
             let scale = c.c[0][0].abs().max(f64::MIN_POSITIVE);
             tails = [tails[0] + p / scale, tails[1] + q / scale];
         }

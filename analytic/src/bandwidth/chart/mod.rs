@@ -70,6 +70,10 @@ pub(super) trait Integrand {
     fn kernel(&self, ring: usize, node: &Node) -> [f64; 2];
     /// Relative rounding of the level at the kernel's edge.
     fn rounding(&self) -> f64;
+    /// What multiplies the tolerance of the mean and of the second moment.
+    fn slack(&self) -> [f64; 2] {
+        [1.0; 2]
+    }
     /// Cells along both axes on which nothing is hidden between nine samples.
     fn coarse(&self) -> [u32; 2] {
         [2, 2]
@@ -83,11 +87,7 @@ const MOST_ROOTS: u32 = 6;
 ///
 /// Where a kernel is small and nothing cuts it, its support is a convex spot about a root, which polar coordinates take
 /// at a hundredth of the cost. Such spots are cut out with a box, and what is left of the rectangle is searched for more.
-pub(super) fn integrate<I: Integrand>(
-    integrand: &I,
-    tolerance: f64,
-    floor: [f64; 2],
-) -> Pair {
+pub(super) fn integrate<I: Integrand>(integrand: &I, tolerance: f64, floor: [f64; 2]) -> Pair {
     let mut sum = Pair::default();
     let whole = integrand.domain();
     let mut boxes = vec![(whole, 0)];
