@@ -45,8 +45,11 @@ pub(in crate::bandwidth) struct Subpath {
     pub measure: f64,
     /// Product of the weights of all vertices.
     pub weight: f64,
-    /// Length of the path [m], where it starts in a point.
+    /// Length of the path [m], where it starts in a point and is linked by it.
     pub length: f64,
+    /// 1, or −1 where the vertex has gone through infinity (and a margin is negative): with it, directions towards the vertex stay
+    /// smooth.
+    pub sheet: f64,
     /// The subpath exists, and nothing stops the connection, where all are ≥ 0; smooth, with a change of sign.
     pub margins: [f64; OWN],
 }
@@ -171,7 +174,7 @@ impl Integrand for Chained<'_> {
             (target, _) => {
                 let v = target.unwrap_or(self.x) - path.vertex;
                 let r = v.length();
-                (v * (1.0 / r), r)
+                (v * (path.sheet / r), r)
             }
         };
         let leaving = towards.dot(path.normal);

@@ -135,6 +135,7 @@ impl Subpaths for Paths<'_> {
             measure: solid_angle * cosine * scale,
             weight,
             length: 0.0,
+            sheet: 1.0,
             margins,
         }
     }

@@ -113,6 +113,7 @@ impl Subpaths for FromReceiver<'_> {
             measure: t * along2 * along2 / plan,
             weight: cup.weight,
             length: 0.0,
+            sheet: 1.0,
             margins,
         }
     }
@@ -149,6 +150,7 @@ impl Subpaths for FromLight<'_> {
             measure: -cup.irradiance * cup.beam.z * 0.5 * chord * chord,
             weight: cup.weight,
             length: 0.0,
+            sheet: 1.0,
             margins,
         }
     }

@@ -157,6 +157,7 @@ impl Subpaths for FromReceiver<'_> {
             measure: se * ce * ratio * cos(i) / ahead,
             weight: t.weight,
             length: 0.0,
+            sheet: 1.0,
             margins,
         }
     }
@@ -185,6 +186,7 @@ impl Subpaths for FromLight<'_> {
             measure: pillar.irradiance * ce * pillar.radius * cos(i),
             weight: t.weight,
             length: 0.0,
+            sheet: 1.0,
             margins,
         }
     }

@@ -114,6 +114,7 @@ impl Subpaths for Paths<'_> {
             weight: t * t * power(f, slab.inside),
             // Index times length would be optical; this is the way in metres.
             length: self.gap / q + glass * n / inner,
+            sheet: if q < 0.0 { -1.0 } else { 1.0 },
             margins,
         }
     }

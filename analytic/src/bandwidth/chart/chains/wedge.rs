@@ -135,6 +135,7 @@ impl Subpaths for Paths<'_> {
             measure: solid_angle * self.intensity.unwrap_or(d.z),
             weight: self.wedge.weight,
             length,
+            sheet: if length < 0.0 { -1.0 } else { 1.0 },
             margins,
         }
     }
