@@ -47,10 +47,11 @@ pub(in crate::bandwidth) struct Subpath {
     pub weight: f64,
     /// Length of the path [m], where it starts in a point and is linked by it.
     pub length: f64,
-    /// 1, or −1 where the vertex has gone through infinity (and a margin is negative): with it, directions towards the vertex stay
-    /// smooth.
+    /// 1, or −1 where the vertex has gone through infinity: with it, the direction and the cosine of the connection stay smooth, and
+    /// the cosine tells that the path does not exist.
     pub sheet: f64,
-    /// The subpath exists, and nothing stops the connection, where all are ≥ 0; smooth, with a change of sign.
+    /// The subpath exists, and nothing stops the connection, where all are ≥ 0; smooth, with a change of sign. What the cosines of
+    /// the connection tell at s and at the floor is not among them: two margins with one zero cannot be told apart.
     pub margins: [f64; OWN],
 }
 
@@ -188,11 +189,8 @@ impl Integrand for Chained<'_> {
             sample *= PI;
             mean
         } else {
-            let cosine = if path.vertex.z > self.x.z {
-                -towards.z
-            } else {
-                towards.z
-            };
+            // The floor faces up.
+            let cosine = -towards.z;
             margins[OWN + 1] = cosine;
             sample *= cosine;
             let mean = sample * path.measure;

@@ -140,8 +140,6 @@ impl Subpaths for FromLight<'_> {
         let z = cup.height - (k - 1.0 + below) * chord * cup.slope();
         let [n, d] = cup.reflected(atan2(cup.beam.y, cup.beam.x), incidence);
         let along = hypot(cup.beam.x, cup.beam.y);
-        let mut margins = [1.0; OWN];
-        margins[0] = z;
         Subpath {
             vertex: vec3(a * n[0], a * n[1], z),
             normal: vec3(-n[0], -n[1], 0.0),
@@ -151,7 +149,7 @@ impl Subpaths for FromLight<'_> {
             weight: cup.weight,
             length: 0.0,
             sheet: 1.0,
-            margins,
+            margins: [1.0; OWN],
         }
     }
 }

@@ -163,7 +163,7 @@ impl Subpaths for FromReceiver<'_> {
     }
 }
 
-/// Rays of the beam by incidence and height where they meet the side.
+/// Rays of the beam by incidence and by the height where they leave: near the floor a linked kernel is as narrow as that is low.
 #[derive(Debug)]
 struct FromLight<'a>(&'a Pillar);
 
@@ -172,13 +172,12 @@ impl Subpaths for FromLight<'_> {
         [[-FRAC_PI_2, FRAC_PI_2], [0.0, self.0.height]]
     }
 
-    fn path(&self, [i, entry]: [f64; 2]) -> Subpath {
+    fn path(&self, [i, z]: [f64; 2]) -> Subpath {
         let pillar = self.0;
         let (se, ce) = sincos(pillar.elevation);
         let t = pillar.through(i, pillar.azimuth, (ce, se));
-        let z = entry - t.rise;
         let mut margins = [1.0; OWN];
-        margins[0] = z;
+        margins[0] = pillar.height - t.rise - z;
         Subpath {
             vertex: pillar.at(t.normal, z),
             normal: t.normal,

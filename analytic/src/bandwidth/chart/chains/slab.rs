@@ -92,14 +92,12 @@ impl Subpaths for Paths<'_> {
     fn path(&self, u: [f64; 2]) -> Subpath {
         let slab = self.slab;
         let frame = [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), self.up];
-        let (d, solid_angle, rest) = direction(&frame, u);
+        let (d, solid_angle, _) = direction(&frame, u);
         let n = slab.index;
         let q = d.dot(self.up);
         let inner = sqrt((n - 1.0) * (n + 1.0) + q * q);
         let glass = f64::from(slab.inside + 1) * (slab.top - slab.bottom);
         let on = self.gap / q + glass / inner;
-        let mut margins = [1.0; OWN];
-        margins[0] = rest;
         let t = fresnel_transmittance(1.0, q, n, inner);
         let f = fresnel_reflectance(1.0, q, n, inner);
         Subpath {
@@ -115,7 +113,7 @@ impl Subpaths for Paths<'_> {
             // Index times length would be optical; this is the way in metres.
             length: self.gap / q + glass * n / inner,
             sheet: if q < 0.0 { -1.0 } else { 1.0 },
-            margins,
+            margins: [1.0; OWN],
         }
     }
 }

@@ -121,13 +121,12 @@ impl Subpaths for Paths<'_> {
 
     fn path(&self, u: [f64; 2]) -> Subpath {
         let normal = self.wedge.normal;
-        let (d, solid_angle, gap) = direction(&self.frame, u);
+        let (d, solid_angle, _) = direction(&self.frame, u);
         let length = self.origin.dot(normal) / -d.dot(normal);
         let vertex = self.origin + d * length;
         let mut margins = [1.0; OWN];
-        margins[0] = gap;
         // On the mirror's side of the edge, in units of the length.
-        margins[1] = vertex.dot(self.wedge.along) / length;
+        margins[0] = vertex.dot(self.wedge.along) / length;
         Subpath {
             vertex,
             normal,
