@@ -65,14 +65,18 @@ pub(in crate::bandwidth) trait Subpaths: Debug {
     fn cells(&self) -> [u32; 2] {
         [4, 4]
     }
+    /// Whether no vertex of the domain is below the floor: then its border is no margin as well.
+    fn is_above_floor(&self) -> bool {
+        false
+    }
 }
 
 /// A sequence of specular vertices between a light and the floor.
 pub(in crate::bandwidth) trait Chain: Debug + Send + Sync {
     /// Subpaths from a receiver point, mollified at the vertex next to the light. `None` where no light can arrive.
-    fn from_receiver<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>>;
+    fn receiver_paths<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>>;
     /// Subpaths from the light, mollified at the vertex next to the receiver.
-    fn from_light<'a>(&'a self) -> Box<dyn Subpaths + 'a>;
+    fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a>;
     /// Whether the mollified vertex is on a mirror: only there two cosines make the symmetric form.
     fn is_mirror(&self) -> bool;
 }
@@ -107,7 +111,7 @@ impl<'a> Chained<'a> {
         let x = vec3(x[0], x[1], receiver.z);
         let from_camera = matches!(technique, Technique::Camera | Technique::Symmetric);
         // Where no path from the receiver can begin, none can end.
-        let from_receiver = chain.from_receiver(x)?;
+        let receiver_paths = chain.receiver_paths(x)?;
         let spans = match &link {
             Some(l) => vec![l.reach()],
             None => profile.levels().iter().map(|&g| squared_chord(g)).collect(),
@@ -118,9 +122,9 @@ impl<'a> Chained<'a> {
         };
         Some(Chained {
             subpaths: if from_camera {
-                from_receiver
+                receiver_paths
             } else {
-                chain.from_light()
+                chain.light_paths()
             },
             source,
             x,
@@ -191,7 +195,9 @@ impl Integrand for Chained<'_> {
         } else {
             // The floor faces up.
             let cosine = -towards.z;
-            margins[OWN + 1] = cosine;
+            if !self.subpaths.is_above_floor() {
+                margins[OWN + 1] = cosine;
+            }
             sample *= cosine;
             let mean = sample * path.measure;
             sample *= self.photons;

@@ -47,7 +47,7 @@ impl Ball {
 }
 
 impl Chain for Ball {
-    fn from_receiver<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
+    fn receiver_paths<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
         let way = self.center - x;
         let distance = way.length();
         Some(Box::new(Paths {
@@ -58,7 +58,7 @@ impl Chain for Ball {
         }))
     }
 
-    fn from_light<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
+    fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
         Box::new(Paths {
             ball: self,
             frame: frame_of(self.beam),

@@ -60,11 +60,11 @@ impl Cup {
 }
 
 impl Chain for Cup {
-    fn from_receiver<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
+    fn receiver_paths<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
         (hypot(x.x, x.y) < self.radius).then(|| Box::new(FromReceiver { cup: self, x }) as _)
     }
 
-    fn from_light<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
+    fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
         Box::new(FromLight(self))
     }
 

@@ -96,7 +96,7 @@ struct Through {
 }
 
 impl Chain for Pillar {
-    fn from_receiver<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
+    fn receiver_paths<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
         let (dx, dy) = (self.center[0] - x.x, self.center[1] - x.y);
         let distance = hypot(dx, dy);
         (distance > self.radius).then(|| {
@@ -109,7 +109,7 @@ impl Chain for Pillar {
         })
     }
 
-    fn from_light<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
+    fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
         Box::new(FromLight(self))
     }
 
@@ -170,6 +170,10 @@ struct FromLight<'a>(&'a Pillar);
 impl Subpaths for FromLight<'_> {
     fn domain(&self) -> [[f64; 2]; 2] {
         [[-FRAC_PI_2, FRAC_PI_2], [0.0, self.0.height]]
+    }
+
+    fn is_above_floor(&self) -> bool {
+        true
     }
 
     fn path(&self, [i, z]: [f64; 2]) -> Subpath {

@@ -42,7 +42,7 @@ impl Slab {
 }
 
 impl Chain for Slab {
-    fn from_receiver<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
+    fn receiver_paths<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
         Some(Box::new(Paths {
             slab: self,
             origin: x,
@@ -53,7 +53,7 @@ impl Chain for Slab {
         }))
     }
 
-    fn from_light<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
+    fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
         Box::new(Paths {
             slab: self,
             origin: self.light,

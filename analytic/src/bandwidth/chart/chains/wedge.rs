@@ -89,12 +89,12 @@ impl Wedge {
 }
 
 impl Chain for Wedge {
-    fn from_receiver<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
+    fn receiver_paths<'a>(&'a self, x: Vec3<f64>) -> Option<Box<dyn Subpaths + 'a>> {
         self.holds(x)
             .then(|| Box::new(self.paths(x, None)) as Box<dyn Subpaths>)
     }
 
-    fn from_light<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
+    fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a> {
         Box::new(self.paths(self.light, Some(self.intensity)))
     }
 
