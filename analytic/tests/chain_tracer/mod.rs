@@ -1,6 +1,9 @@
 //! Chains of specular interactions followed step by step in vectors: nearest hits, Snell's law, Fresnel's sine and tangent laws.
 //! No unfolding, no image, no closed chain.
 
+pub mod scenes;
+pub mod sums;
+
 pub type V = [f64; 3];
 
 pub const PI: f64 = core::f64::consts::PI;
@@ -57,7 +60,8 @@ pub struct End {
 fn fresnel(s: f64, n: f64) -> f64 {
     let (i, t) = (libm::asin(s.min(1.0)), libm::asin((s / n).min(1.0)));
     if i < 1e-7 {
-        return ((n - 1.0) / (n + 1.0)).powi(2);
+        let r = (n - 1.0) / (n + 1.0);
+        return r * r;
     }
     let a = libm::sin(i - t) / libm::sin(i + t);
     let b = libm::tan(i - t) / libm::tan(i + t);
@@ -138,7 +142,11 @@ impl World {
             }
             World::Slab(bottom, top, n) => {
                 let up = [0.0, 0.0, d[2].signum()];
-                let (near, far) = if d[2] > 0.0 { (bottom, top) } else { (top, bottom) };
+                let (near, far) = if d[2] > 0.0 {
+                    (bottom, top)
+                } else {
+                    (top, bottom)
+                };
                 let mut p = add(from, d, (near - from[2]) / d[2]);
                 let (mut g, mut weight) = bent(d, [0.0, 0.0, -up[2]], n)?;
                 for step in 0..k - 1 {
@@ -172,7 +180,7 @@ impl World {
             World::Cup(a, h, r) => {
                 let (mut p, mut d) = (from, d);
                 let mut weight = 1.0;
-                if p[0].hypot(p[1]) >= a {
+                if libm::hypot(p[0], p[1]) >= a {
                     // Over the near rim.
                     let t = circle(p, d, a, 2)?[0];
                     p = add(p, d, t);
