@@ -14,8 +14,8 @@ use std::time::Instant;
 use clap::Parser;
 use nephroid::entry;
 use nephroid::integrators::{Fault, Integrator, NAMES, Settings, Treatment, by_name};
+use nephroid::judge::finding::State;
 use nephroid::judge::hypotheses::LEVEL;
-use nephroid::judge::verdict::State;
 use nephroid::verify::effort::{BANDWIDTH, Effort};
 use nephroid::verify::expected::Truths;
 use nephroid::verify::run::{Request, run};
@@ -87,6 +87,7 @@ fn request(
         seed,
         bandwidth: BANDWIDTH,
         kernel: None,
+        mask: None,
     }
 }
 

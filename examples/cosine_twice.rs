@@ -34,6 +34,7 @@ fn main() -> Result<(), nephroid::error::Error> {
         seed: 1,
         bandwidth: 0.2,
         kernel: None,
+        mask: None,
     };
     let outcome = run(&request, &mut Truths::for_margin(margin), &|_, _, _, _| {})?;
     println!("{}", text::outcome(&outcome));

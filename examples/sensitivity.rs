@@ -83,6 +83,7 @@ fn main() -> Result<(), nephroid::error::Error> {
                 seed: 1,
                 bandwidth: 0.2,
                 kernel: None,
+                mask: None,
             };
             let outcome = run(&request, &mut truths, &|_, _, _, _| {})?;
             for v in outcome

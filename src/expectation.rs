@@ -1,6 +1,6 @@
-//! Expected class means of a whole image at finite bandwidth: what a regularized integrator is judged against.
+//! Expected class means of an image and of its areas at finite bandwidth: what a regularized integrator is judged against.
 //!
-//! A mean over a whole image is a smooth function of the bandwidth b, and so is b² times a second moment (it grows like
+//! A mean over an area is a smooth function of the bandwidth b, and so is b² times a second moment (it grows like
 //! b⁻²). So the average over a long schedule needs a few bandwidths only: the function is interpolated in b² at Chebyshev
 //! nodes between the smallest and the largest, and the interpolant is averaged over the schedule itself. The last
 //! Chebyshev coefficient bounds what the interpolation leaves out.
@@ -8,11 +8,22 @@
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Bounded, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, InvalidParameter};
+use nephroid_analytic::scene::{Entry, InvalidParameter, Kind};
 use rayon::prelude::*;
 
-/// The image is integrated in this many strips of rows (fewer if it has fewer rows), whatever the number of threads.
-const STRIPS: u32 = 16;
+use crate::mosaic::{Mosaic, Rectangle};
+use crate::regions::Regions;
+
+/// The error of one rectangle is an estimate, which has been seen to be three times too small (`tests/bandwidth.rs`). Those of
+/// several are added up, not in quadrature, which makes up for it as their number grows: the factor on the estimate for so many.
+fn allowance(rectangles: usize) -> f64 {
+    (4.0 / libm::sqrt(rectangles as f64)).max(1.0)
+}
+
+/// Whether there are expectations at finite bandwidth for a kind. What regularizes is not judged on the others.
+pub fn is_known(kind: &Kind) -> bool {
+    matches!(kind, Kind::Diffuse(_) | Kind::PlanarMirror(_))
+}
 
 /// Mean over the whole image of the radiance [W m⁻² sr⁻¹] of each regularized class, and the second moment of one sample
 /// of it (one camera sample uniform on the film, one sample of the estimator), averaged over the bandwidths: angles [rad],
@@ -31,7 +42,32 @@ pub fn class_means(
     bandwidths: &[f64],
     tolerance: f64,
 ) -> Result<Vec<(PathClass, Moments)>, InvalidParameter> {
+    let image = Regions::image(entry.camera.width, entry.camera.height);
+    let all = [tolerance; 2];
+    let classes = area_moments(entry, technique, kernel, bandwidths, all, &image)?;
+    Ok(classes
+        .into_iter()
+        .map(|(c, areas)| (c, areas[0]))
+        .collect())
+}
+
+/// The same for each area of the regions, which are those of the entry's image. `tolerance` is that of the first moments and that of
+/// the second ones (infinite if they are not asked for), relative to the sum over all areas: those of faint ones are known
+/// as well as light of that amount needs.
+///
+/// # Errors
+/// As [`class_means`].
+pub fn area_moments(
+    entry: &Entry,
+    technique: Technique,
+    kernel: Kernel,
+    bandwidths: &[f64],
+    tolerance: [f64; 2],
+    regions: &Regions,
+) -> Result<Vec<(PathClass, Vec<Moments>)>, InvalidParameter> {
     nephroid_analytic::bandwidth::check(technique, kernel, bandwidths)?;
+    let mosaic = regions.mosaic();
+    let averaged = |b: &[f64]| averaged_kernel(entry, technique, kernel, b, tolerance, &mosaic);
     let fold = |f: fn(f64, f64) -> f64| bandwidths.iter().copied().reduce(f);
     let (low, high) = (
         fold(f64::min).unwrap_or_default(),
@@ -40,31 +76,36 @@ pub fn class_means(
     // More nodes for a wider range; below this length the averaged kernel itself is cheaper.
     let nodes = if high > 4.0 * low { 9 } else { 5 };
     if bandwidths.len() <= nodes || !(high > low * (1.0 + 1e-9)) {
-        return averaged_kernel(entry, technique, kernel, bandwidths, tolerance);
+        return averaged(bandwidths);
     }
     let rule = Interpolation::new(nodes, low, high);
     let runs = rule
         .bandwidths
         .iter()
-        .map(|&b| averaged_kernel(entry, technique, kernel, &[b], tolerance))
+        .map(|&b| averaged(&[b]))
         .collect::<Result<Vec<_>, _>>()?;
-    let class_count = runs.first().map_or(0, Vec::len);
-    Ok((0..class_count)
-        .map(|c| {
-            let means: Vec<Bounded> = runs.iter().map(|r| r[c].1.mean).collect();
-            let seconds: Vec<Bounded> = runs
-                .iter()
-                .zip(&rule.bandwidths)
-                .map(|(r, b)| Bounded {
-                    value: b * b * r[c].1.second_moment.value,
-                    error: b * b * r[c].1.second_moment.error,
-                })
-                .collect();
-            let moments = Moments {
-                mean: rule.average(&means, |_| 1.0, bandwidths),
-                second_moment: rule.average(&seconds, |b| 1.0 / (b * b), bandwidths),
-            };
-            (runs[0][c].0, moments)
+    let interpolated = |class: usize, area: usize| {
+        let at = || runs.iter().map(|r| r[class].1[area]);
+        let means: Vec<Bounded> = at().map(|m| m.mean).collect();
+        let seconds: Vec<Bounded> = at()
+            .zip(&rule.bandwidths)
+            .map(|(m, b)| Bounded {
+                value: b * b * m.second_moment.value,
+                error: b * b * m.second_moment.error,
+            })
+            .collect();
+        Moments {
+            mean: rule.average(&means, |_| 1.0, bandwidths),
+            second_moment: rule.average(&seconds, |b| 1.0 / (b * b), bandwidths),
+        }
+    };
+    let classes = runs.first().map_or(&[][..], |r| r.as_slice());
+    Ok(classes
+        .iter()
+        .enumerate()
+        .map(|(c, (class, areas))| {
+            let of_area = |a: usize| interpolated(c, a);
+            (*class, (0..areas.len()).map(of_area).collect())
         })
         .collect())
 }
@@ -131,68 +172,80 @@ impl Interpolation {
     }
 }
 
-/// One run with the averaged kernel.
+/// One run with the averaged kernel: the mean over each area.
 fn averaged_kernel(
     entry: &Entry,
     technique: Technique,
     kernel: Kernel,
     bandwidths: &[f64],
-    tolerance: f64,
-) -> Result<Vec<(PathClass, Moments)>, InvalidParameter> {
+    tolerance: [f64; 2],
+    mosaic: &Mosaic,
+) -> Result<Vec<(PathClass, Vec<Moments>)>, InvalidParameter> {
     let film = FilmExpectation::new(entry, technique, kernel, bandwidths)?;
     let classes = film.classes();
-    let (width, height) = film.size();
-    let count = STRIPS.min(height);
-    let rows = |k: u32| height * k / count..height * (k + 1) / count;
+    let region = |r: &Rectangle, targets: &[[f64; 2]], tolerance: f64| {
+        film.region(r.x..r.x + r.width, r.y..r.y + r.height, targets, tolerance)
+    };
 
     // A first estimate tells how bright the classes are and where the error is.
     let unlimited = vec![[f64::INFINITY; 2]; classes.len()];
-    let first: Vec<Vec<Moments>> = (0..count)
-        .into_par_iter()
-        .map(|k| film.strip(rows(k), &unlimited, 1e-3))
+    let first: Vec<Vec<Moments>> = mosaic
+        .rectangles
+        .par_iter()
+        .map(|r| region(r, &unlimited, 1e-3))
         .collect();
     let of = |m: &Moments| [m.mean, m.second_moment];
     let total = |c: usize, k: usize| -> [f64; 2] {
-        first.iter().fold([0.0; 2], |sum, strip| {
-            let b = of(&strip[c])[k];
+        first.iter().fold([0.0; 2], |sum, part| {
+            let b = of(&part[c])[k];
             [sum[0] + b.value.abs(), sum[1] + b.error]
         })
     };
     let totals: Vec<[[f64; 2]; 2]> = (0..classes.len())
         .map(|c| [total(c, 0), total(c, 1)])
         .collect();
+    let pixels: u64 = mosaic.rectangles.iter().map(Rectangle::pixels).sum();
 
-    // Half of the allowed error is shared equally, half goes where it is hard to get.
-    let strips: Vec<Vec<Moments>> = (0..count)
+    // What is asked for holds for the first area.
+    let wanted = tolerance.map(|t| t / allowance(mosaic.areas[0].len()));
+    // Half of the allowed error is shared equally by pixels, half goes where it is hard to get.
+    let target = |part: usize, c: usize, k: usize| {
+        if wanted[k].is_infinite() {
+            return f64::INFINITY;
+        }
+        let [value, error] = totals[c][k];
+        let here = of(&first[part][c])[k].error;
+        let hard = if error > 0.0 { here / error } else { 0.0 };
+        let equal = mosaic.rectangles[part].pixels() as f64 / pixels as f64;
+        wanted[k] * value * 0.5 * (equal + hard)
+    };
+    let parts: Vec<Vec<Moments>> = (0..mosaic.rectangles.len())
         .into_par_iter()
-        .map(|k| {
+        .map(|part| {
             let targets: Vec<[f64; 2]> = (0..classes.len())
-                .map(|c| {
-                    core::array::from_fn(|m| {
-                        let [value, error] = totals[c][m];
-                        let here = of(&first[k as usize][c])[m].error;
-                        let share = if error > 0.0 { here / error } else { 0.0 };
-                        tolerance * value * 0.5 * (1.0 / f64::from(count) + share)
-                    })
-                })
+                .map(|c| core::array::from_fn(|k| target(part, c, k)))
                 .collect();
-            film.strip(rows(k), &targets, tolerance)
+            let finest = wanted[0].min(wanted[1]);
+            region(&mosaic.rectangles[part], &targets, finest)
         })
         .collect();
 
-    let pixels = f64::from(width) * f64::from(height);
+    let mean = |c: usize, area: &Vec<usize>| {
+        let pixels: u64 = area.iter().map(|&k| mosaic.rectangles[k].pixels()).sum();
+        let pixels = pixels as f64;
+        let sure = allowance(area.len());
+        let mut sum = Moments::default();
+        for m in area.iter().map(|&k| &parts[k][c]) {
+            sum.mean.value += m.mean.value / pixels;
+            sum.mean.error += sure * m.mean.error / pixels;
+            sum.second_moment.value += m.second_moment.value / pixels;
+            sum.second_moment.error += sure * m.second_moment.error / pixels;
+        }
+        sum
+    };
     Ok(classes
         .iter()
         .enumerate()
-        .map(|(c, &class)| {
-            let mut sum = Moments::default();
-            for strip in &strips {
-                sum.mean.value += strip[c].mean.value / pixels;
-                sum.mean.error += strip[c].mean.error / pixels;
-                sum.second_moment.value += strip[c].second_moment.value / pixels;
-                sum.second_moment.error += strip[c].second_moment.error / pixels;
-            }
-            (class, sum)
-        })
+        .map(|(c, &class)| (class, mosaic.areas.iter().map(|a| mean(c, a)).collect()))
         .collect())
 }

@@ -7,6 +7,8 @@
 
 use core::fmt;
 
+use crate::mosaic::{Mosaic, Rectangle, runs};
+
 /// Least width and height of a tile [pixels].
 pub const SMALLEST_TILE: u32 = 16;
 /// Most levels of the quadtree below the whole image.
@@ -49,6 +51,9 @@ impl fmt::Display for Area {
         }
     }
 }
+
+/// An image that is not divided is one of at most this many strips of rows, so that threads have something to share.
+const STRIPS: u32 = 16;
 
 /// The areas of an image, the first of which is the one that decides about equivalence.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,6 +124,74 @@ impl Regions {
     /// The areas.
     pub fn areas(&self) -> &[Area] {
         &self.areas
+    }
+
+    /// The first area alone.
+    pub fn first(&self) -> Self {
+        Regions {
+            areas: self.areas[..1].to_vec(),
+            ..*self
+        }
+    }
+
+    /// The areas as unions of disjoint rectangles: the smallest tiles, the runs of a mask, or strips of an image that has
+    /// neither.
+    pub fn mosaic(&self) -> Mosaic {
+        let deepest = self.areas.iter().map(level_of).max().unwrap_or(0);
+        let rectangles = match self.areas.first() {
+            Some(Area::Mask(pixels)) => runs(pixels, self.width),
+            _ if deepest > 0 => self
+                .areas
+                .iter()
+                .filter(|a| level_of(a) == deepest)
+                .filter_map(|a| self.rectangle(a))
+                .collect(),
+            _ => {
+                let strips = STRIPS.min(self.height);
+                let row = |k: u32| self.height * k / strips;
+                let strip = |k: u32| Rectangle {
+                    x: 0,
+                    y: row(k),
+                    width: self.width,
+                    height: row(k + 1) - row(k),
+                };
+                (0..strips).map(strip).collect()
+            }
+        };
+        let of_area = |area: &Area| -> Vec<usize> {
+            let outer = self.rectangle(area);
+            let belongs = |r: &Rectangle| outer.is_none_or(|o| r.is_inside(&o));
+            (0..rectangles.len())
+                .filter(|&k| belongs(&rectangles[k]))
+                .collect()
+        };
+        let areas = self.areas.iter().map(of_area).collect();
+        Mosaic { rectangles, areas }
+    }
+
+    /// An area that is a rectangle as one.
+    fn rectangle(&self, area: &Area) -> Option<Rectangle> {
+        match *area {
+            Area::Image => Some(Rectangle {
+                x: 0,
+                y: 0,
+                width: self.width,
+                height: self.height,
+            }),
+            Area::Tile {
+                x,
+                y,
+                width,
+                height,
+                ..
+            } => Some(Rectangle {
+                x,
+                y,
+                width,
+                height,
+            }),
+            Area::Mask(_) => None,
+        }
     }
 
     /// How much of a check's error probability each area has: half for the first, the rest shared equally by the levels
@@ -228,6 +301,43 @@ mod tests {
         }
         assert_eq!(Regions::quadtree(31, 500).areas().len(), 1);
         assert_eq!(Regions::quadtree(128, 128).areas().len(), 1 + 4 + 16 + 64);
+    }
+
+    /// Every pixel of an area is in exactly one of its rectangles, and no other is.
+    #[test]
+    fn rectangles_cover_their_areas_once() {
+        let (width, height) = (41, 33);
+        let scattered: Vec<bool> = (0..width * height)
+            .map(|i| (i * i + i / 7) % 5 < 2 || i % width < 4 || i / width > 30)
+            .collect();
+        for regions in [
+            Regions::image(width, height),
+            Regions::image(3, 2),
+            Regions::quadtree(100, 77),
+            Regions::mask(width, height, &scattered).unwrap(),
+            Regions::mask(width, height, &vec![true; scattered.len()]).unwrap(),
+        ] {
+            let mosaic = regions.mosaic();
+            let mut layer = vec![0.0; regions.width as usize * regions.height as usize];
+            for (k, r) in mosaic.rectangles.iter().enumerate() {
+                for j in r.y..r.y + r.height {
+                    for i in r.x..r.x + r.width {
+                        let pixel = &mut layer[(j * regions.width + i) as usize];
+                        assert_eq!(*pixel, 0.0);
+                        *pixel = (k + 1) as f64;
+                    }
+                }
+            }
+            let sums = regions.reduce(&layer);
+            for ((area, sum), pixels) in mosaic.areas.iter().zip(sums).zip(regions.pixels()) {
+                let of = |k: &usize| mosaic.rectangles[*k].pixels();
+                assert_eq!(area.iter().map(of).sum::<u64>(), pixels);
+                let weighted = area.iter().map(|k| (k + 1) as f64 * of(k) as f64);
+                assert_eq!((weighted.sum::<f64>(), pixels), sum);
+            }
+        }
+        let whole = Regions::mask(width, height, &vec![true; scattered.len()]).unwrap();
+        assert_eq!(whole.mosaic().rectangles.len(), 1);
     }
 
     #[test]

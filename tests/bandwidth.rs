@@ -1,6 +1,7 @@
 //! Finite bandwidth from outside: the reference table through `evaluate`, and class means of whole images.
 
-use nephroid::expectation::class_means;
+use nephroid::expectation::{area_moments, class_means};
+use nephroid::regions::Regions;
 use nephroid::{entry, evaluate};
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Kernel, Technique};
@@ -47,40 +48,76 @@ fn evaluate_notices_a_wrong_value_and_refuses_what_it_cannot_read() {
     }
 }
 
+/// The image, its tiles, and a mask of which neighbouring rows do not fit into rectangles: the means over each are those of its pixels.
 #[test]
-fn whole_image_means_are_the_sum_of_the_pixels() {
+fn means_over_areas_are_those_of_their_pixels() {
+    const SIDE: u32 = 32;
     let mut mirror_wall = entry::load("mirror-wall").unwrap();
-    (mirror_wall.camera.width, mirror_wall.camera.height) = (32, 32);
+    (mirror_wall.camera.width, mirror_wall.camera.height) = (SIDE, SIDE);
+    let ragged: Vec<bool> = (0..SIDE * SIDE)
+        .map(|k| k % SIDE > 10 + (k / SIDE) % 3 || k / SIDE == 20)
+        .collect();
     for (technique, kernel) in [
         (Technique::Camera, Kernel::Cone),
         (Technique::Merge, Kernel::Disc),
     ] {
         let schedule = [0.2, 0.15];
-        let means = class_means(&mirror_wall, technique, kernel, &schedule, 1e-4).unwrap();
         let film = FilmExpectation::new(&mirror_wall, technique, kernel, &schedule).unwrap();
-        let mut sums = [[0.0; 4]; 2];
-        for j in 0..32 {
-            for (sum, row) in sums.iter_mut().zip(film.row(j, 1e-3)) {
+        // Per class and moment: values and bounds of the pixels.
+        let mut pixels = vec![vec![[Vec::new(), Vec::new()]; 2]; 2];
+        for j in 0..SIDE {
+            for (class, row) in pixels.iter_mut().zip(film.row(j, 1e-3)) {
                 for m in row {
-                    let parts = [m.mean, m.second_moment];
-                    for (k, b) in parts.into_iter().enumerate() {
-                        sum[2 * k] += b.value / 1024.0;
-                        sum[2 * k + 1] += b.error / 1024.0;
+                    for (moment, b) in class.iter_mut().zip([m.mean, m.second_moment]) {
+                        moment[0].push(b.value);
+                        moment[1].push(b.error);
                     }
                 }
             }
         }
         let classes = [PathClass::LSDE, PathClass::LSDSE];
-        for ((class, m), (expected, sum)) in means.iter().zip(classes.iter().zip(sums)) {
-            assert_eq!(class, expected);
-            for (k, b) in [m.mean, m.second_moment].into_iter().enumerate() {
-                let off = (b.value - sum[2 * k]).abs();
-                assert!(
-                    off <= b.error + sum[2 * k + 1],
-                    "{technique} {class} {off:e} {b:?}"
-                );
+        for regions in [
+            Regions::quadtree(SIDE, SIDE),
+            Regions::mask(SIDE, SIDE, &ragged).unwrap(),
+        ] {
+            let moments = |tolerance: [f64; 2]| {
+                let (wall, schedule) = (&mirror_wall, &schedule);
+                area_moments(wall, technique, kernel, schedule, tolerance, &regions).unwrap()
+            };
+            let found = moments([1e-4; 2]);
+            assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), classes);
+            let first_only = moments([1e-4, f64::INFINITY]);
+            for (c, (class, areas)) in found.iter().enumerate() {
+                let sums = |moment: usize, what: usize| regions.reduce(&pixels[c][moment][what]);
+                for (a, m) in areas.iter().enumerate() {
+                    for (k, b) in [m.mean, m.second_moment].into_iter().enumerate() {
+                        let count = regions.pixels()[a] as f64;
+                        let [value, bound] = [0, 1].map(|what| sums(k, what)[a].0 / count);
+                        let off = (b.value - value).abs();
+                        let where_ = &regions.areas()[a];
+                        assert!(
+                            off <= b.error + bound,
+                            "{technique} {class} {where_} {off:e} {b:?}"
+                        );
+                    }
+                    // What is not asked for does not change what is.
+                    let off = (first_only[c].1[a].mean.value - m.mean.value).abs();
+                    assert!(off <= first_only[c].1[a].mean.error + m.mean.error);
+                }
+                for b in [areas[0].mean, areas[0].second_moment] {
+                    assert!(b.error <= 1e-4 * b.value, "{technique} {class} {b:?}");
+                }
+                let b = first_only[c].1[0].mean;
                 assert!(b.error <= 1e-4 * b.value, "{technique} {class} {b:?}");
             }
+        }
+        let means = class_means(&mirror_wall, technique, kernel, &schedule, 1e-4).unwrap();
+        for ((class, m), pixels) in means.iter().zip(&pixels) {
+            let mean = pixels[0][0].iter().sum::<f64>() / f64::from(SIDE * SIDE);
+            assert!(
+                (m.mean.value / mean - 1.0).abs() < 2e-3,
+                "{technique} {class}"
+            );
         }
     }
 }

@@ -7,8 +7,8 @@ use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use nephroid::entry::from_toml;
 use nephroid::integrators::{Fault, Integrator, Settings, by_name};
+use nephroid::judge::finding::State;
 use nephroid::judge::hypotheses::{LEVEL, Levels};
-use nephroid::judge::verdict::State;
 use nephroid::regions::Regions;
 use nephroid::verify::effort::Effort;
 use nephroid::verify::expected::{Expected, Truths};
@@ -79,6 +79,7 @@ fn request(integrators: Vec<Box<dyn Integrator>>, seed: u64, margin: f64) -> Req
         seed,
         bandwidth: BANDWIDTH,
         kernel: None,
+        mask: None,
     }
 }
 
@@ -180,7 +181,7 @@ fn the_kernel_of_the_tangent_plane_is_different_at_half_a_radian() {
     let classes = entry.kind.classes();
     let expected: Vec<_> = classes
         .iter()
-        .map(|&c| (c == PathClass::LSDE).then(|| Expected::of_image(truth.1.mean)))
+        .map(|&c| (c == PathClass::LSDE).then(|| Expected::of_first(truth.1.mean)))
         .collect();
     let demand = Demand {
         margin: 0.015,

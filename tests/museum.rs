@@ -225,6 +225,7 @@ fn a_users_own_method_is_diagnosed() {
         most_paths: Effort::Quick.most_paths(),
         variations: false,
         kernel: None,
+        mask: None,
     };
     let outcome = run(&request, &mut Truths::for_margin(0.02), &|_, _, _, _| {}).unwrap();
     let text = outcome.verdicts[0].looks_like.clone().unwrap_or_default();

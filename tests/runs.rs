@@ -2,8 +2,8 @@
 
 use nephroid::film::Film;
 use nephroid::integrators::Prepared;
+use nephroid::judge::finding::State;
 use nephroid::judge::hypotheses::Levels;
-use nephroid::judge::verdict::State;
 use nephroid::regions::Regions;
 use nephroid::stream::{philox, uniform};
 use nephroid::verify::expected::Expected;
@@ -77,7 +77,7 @@ fn run_at(margin: f64, spikes: Spikes, most_paths: u64, seed: u64) -> (Evidence,
     };
     let seeds = Seeds::new(seed, "spikes", "fake");
     let regions = Regions::image(CANVAS.width, CANVAS.height);
-    let expected = TRUTH.map(|t| t.map(Expected::of_image));
+    let expected = TRUTH.map(|t| t.map(Expected::of_first));
     let prepare = || -> Box<dyn Prepared> { Box::new(spikes) };
     let evidence = gather(prepare, CANVAS, &regions, shape, seeds, &expected, demand);
     (evidence, demand)
@@ -162,10 +162,7 @@ fn light_in_the_wrong_place_is_found_in_a_tile() {
     let regions = Regions::quadtree(64, 64);
     let one = TRUTH[0].unwrap();
     let expected = [
-        Some(Expected {
-            image: one,
-            areas: vec![one; regions.areas().len()],
-        }),
+        Some(Expected::new(one, vec![one; regions.areas().len() - 1])),
         None,
     ];
     let shape = Shape {

@@ -6,10 +6,11 @@ mod synthetic;
 
 use nephroid::exit;
 use nephroid::judge::evidence::{Invalid, Sample};
+use nephroid::judge::finding::{State, exit_code};
 use nephroid::judge::hypotheses::{Levels, difference_p, equivalence_p};
 use nephroid::judge::power::replicates_needed;
 use nephroid::judge::spending::looks;
-use nephroid::judge::verdict::{Case, Spent, State, decide, decide_at, exit_code};
+use nephroid::judge::verdict::{Case, Spent, decide, decide_at};
 use nephroid_analytic::camera::Bounded;
 use synthetic::{Random, normal_sample, of_values, sample, spiky_sample};
 

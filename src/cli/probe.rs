@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};
 use nephroid_analytic::bandwidth::{
-    self, Expectation, Kernel, PlanarSetting, Technique, UnknownName,
+    self, Convention, Expectation, Kernel, Moments, PlanarSetting, Technique, UnknownName,
 };
+use nephroid_analytic::class::PathClass;
 use nephroid_analytic::entries::{FloorTruth, State};
 use nephroid_analytic::kinds::singularity::Singularity;
 use nephroid_analytic::scene::{InvalidParameter, Kind};
@@ -42,6 +44,19 @@ pub struct Args {
     /// Kernel: cone, epanechnikov, vmf, disc or biweight (default: cone, or disc for merge).
     #[arg(long, value_name = "K", requires = "technique")]
     kernel: Option<String>,
+    /// Distance d from which a linked bandwidth atan(r/d) is found: exact (along the exact ray to the floor), vertex (to the
+    /// connected point) or light.
+    #[arg(
+        long,
+        value_name = "C",
+        requires = "technique",
+        default_value = "exact"
+    )]
+    convention: String,
+    /// Cross-section over which the photons of parallel light are uniform, in square metres: second moments of light, linked
+    /// and merge are proportional to it.
+    #[arg(long, value_name = "A", requires = "technique", default_value_t = 1.0)]
+    beam_area: f64,
     /// Add to every E an interval that provably contains the true one, and the number of rays that is proven.
     #[arg(long, conflicts_with = "technique")]
     certify: bool,
@@ -94,7 +109,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         });
         answers.extend(light.into_iter().enumerate().map(|(k, t)| {
             let moments = match &regularized {
-                Some(e) if t.class.is_caustic() => Some(e.at([x, y, 0.0], TOLERANCE)),
+                Some(e) if t.class.is_caustic() => e.at(t.class, [x, y]),
                 _ => None,
             };
             let irradiance = moments.map_or(t.irradiance.value, |m| m.mean.value);
@@ -122,14 +137,33 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     Ok(exit::PASS)
 }
 
-/// Relative tolerance of an expectation.
+/// Relative tolerance of an expectation in a plane mirror, and in general.
 const TOLERANCE: f64 = 1e-12;
+const TOLERANCE_CURVED: f64 = 1e-10;
+
+/// The expectation of a regularized estimator.
+enum Regularized {
+    Planar(Box<Expectation>),
+    General(Box<EntryExpectation>),
+}
+
+impl Regularized {
+    fn at(&self, class: PathClass, [x, y]: [f64; 2]) -> Option<Moments> {
+        match self {
+            Regularized::Planar(e) => Some(e.at([x, y, 0.0], TOLERANCE)),
+            Regularized::General(e) => {
+                let position = e.classes().iter().position(|c| *c == class)?;
+                Some(e.at(x, y, TOLERANCE_CURVED)[position])
+            }
+        }
+    }
+}
 
 /// The expectation that the options ask for; `None` without them, or where the scene has no regularized class.
 fn regularized(
     args: &Args,
     entry: &nephroid_analytic::scene::Entry,
-) -> Result<Option<Expectation>, Error> {
+) -> Result<Option<Regularized>, Error> {
     let Some(name) = &args.technique else {
         return Ok(None);
     };
@@ -143,27 +177,44 @@ fn regularized(
         Some(k) => k.parse::<Kernel>().map_err(|e| unknown("kernel", e))?,
         None => technique.default_kernel(),
     };
+    let convention: Convention = args
+        .convention
+        .parse()
+        .map_err(|e| unknown("convention", e))?;
     let option = |e: InvalidParameter| Error::Parameter {
         file: "command line".to_owned(),
-        key: format!("--{}", e.key),
+        key: format!("--{}", e.key.replace('_', "-")),
         found: e.found,
         allowed: e.allowed,
     };
     bandwidth::check(technique, kernel, &args.bandwidth).map_err(option)?;
-    let setting = match &entry.kind {
+    if !(args.beam_area > 0.0 && args.beam_area <= 1e12) {
+        return Err(option(InvalidParameter {
+            key: "beam_area".to_owned(),
+            found: args.beam_area.to_string(),
+            allowed: "greater than 0, up to 1e12 square metres".to_owned(),
+        }));
+    }
+    Ok(match &entry.kind {
         Kind::Diffuse(_) => None,
-        Kind::PlanarMirror(_) => PlanarSetting::of_entry(entry).map_err(option)?,
-        _ => {
-            return Err(option(InvalidParameter {
-                key: "technique".to_owned(),
-                found: format!("{technique} for a scene of kind {}", entry.kind.name()),
-                allowed: "scenes of kind diffuse or planar-mirror".to_owned(),
-            }));
+        Kind::PlanarMirror(_) if convention == Convention::Exact => {
+            let setting = PlanarSetting::of_entry(entry).map_err(option)?;
+            setting
+                .map(|s| Expectation::new(s, technique, kernel, &args.bandwidth).map_err(option))
+                .transpose()?
+                .map(|e| Regularized::Planar(Box::new(e)))
         }
-    };
-    setting
-        .map(|s| Expectation::new(s, technique, kernel, &args.bandwidth).map_err(option))
-        .transpose()
+        _ => {
+            let estimator = Estimator {
+                technique,
+                kernel,
+                convention,
+                bandwidths: &args.bandwidth,
+            };
+            let e = EntryExpectation::new(entry, estimator, args.beam_area).map_err(option)?;
+            Some(Regularized::General(Box::new(e)))
+        }
+    })
 }
 
 /// A point and the line it stands on.
@@ -307,6 +358,8 @@ fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
         top["technique"] = json!(technique);
         top["bandwidths"] = json!(args.bandwidth);
         top["kernel"] = json!(args.kernel);
+        top["convention"] = json!(args.convention);
+        top["beam_area"] = json!(args.beam_area);
     }
     top["answers"] = json!(answers);
     top.to_string()

@@ -10,6 +10,7 @@ use nephroid_analytic::bandwidth::SMALLEST_BANDWIDTH;
 use crate::error::Error;
 use crate::integrators::{Integrator, Kernel, NAMES, Settings, by_name};
 use crate::judge::hypotheses::LEVEL;
+use crate::mask::Mask;
 use crate::output::write_text;
 use crate::report;
 use crate::verify::effort::{BANDWIDTH, Effort};
@@ -60,6 +61,10 @@ pub struct Args {
     /// finer, cropped, with more and fewer paths. Always from standard on, if nothing is named.
     #[arg(long)]
     variations: bool,
+    /// Judge only the pixels that are brighter than half in this PNG, which has the size of the image; not with
+    /// --variations.
+    #[arg(long, value_name = "FILE.png", conflicts_with = "variations")]
+    mask: Option<PathBuf>,
     /// Share the error probabilities among at least this many checks. Only the commands that reproduce a verdict need
     /// it.
     #[arg(long, value_name = "N", value_parser = super::count)]
@@ -151,10 +156,14 @@ fn request(args: &Args) -> Result<Request, Error> {
         let entry = entry::load(&argument)?;
         Ok(Subject { argument, entry })
     };
-    let scenes = scenes.into_iter().map(subject);
+    let scenes: Vec<Subject> = scenes.into_iter().map(subject).collect::<Result<_, _>>()?;
     let (integrators, left_out) = integrators(args)?;
+    let mask = args.mask.as_deref().map(Mask::read).transpose()?;
+    if let Some(mask) = &mask {
+        scenes.iter().try_for_each(|s| mask.fits(&s.entry))?;
+    }
     Ok(Request {
-        scenes: scenes.collect::<Result<_, Error>>()?,
+        scenes,
         integrators,
         left_out,
         effort: args.effort,
@@ -167,10 +176,12 @@ fn request(args: &Args) -> Result<Request, Error> {
         level: args.level,
         checks: args.checks,
         most_paths: args.budget.unwrap_or(args.effort.most_paths()),
-        variations: args.variations || (!explicit && args.effort != Effort::Quick),
+        variations: args.variations
+            || (!explicit && args.effort != Effort::Quick && mask.is_none()),
         seed: args.seed,
         bandwidth: args.bandwidth,
         kernel: args.kernel,
+        mask,
     })
 }
 

@@ -5,7 +5,7 @@ use nephroid_analytic::scene::Entry;
 use super::{Known, Subject, of};
 use crate::error::Error;
 use crate::integrators::{ClassPlan, Kernel, Plan, Treatment};
-use crate::judge::verdict::State;
+use crate::judge::finding::State;
 use crate::regions::Regions;
 use crate::verify::expected::Truths;
 use crate::verify::replicates::{Seeds, Shape};
@@ -42,7 +42,7 @@ pub fn means_at_half(
     let expected = truths.of(pair.scene, entry, &plan, regions, kernel, &half)?;
     Ok(expected
         .into_iter()
-        .map(|e| e.map(|e| e.image.value))
+        .map(|e| e.map(|e| e.first().value))
         .collect())
 }
 
@@ -86,7 +86,7 @@ pub fn annotate(
         let treatment = pair.plan[layer].treatment;
         let means = match (treatment, verdict.truth) {
             (Treatment::Regularized(_), Some(truth)) => {
-                let regions = Regions::image(width, height);
+                let regions = Regions::quadtree(width, height);
                 let half = means_at_half(truths, entry, &pair, &regions, request.kernel, &shape)?;
                 half[layer].map(|half| [truth.value, half])
             }

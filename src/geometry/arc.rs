@@ -91,6 +91,16 @@ impl Specular for Arc {
         let (outer, inner) = self.crossings(origin, direction);
         (outer < t_end) | (inner < t_end)
     }
+
+    fn normal_after(&self, meeting: &Meeting) -> DVec3 {
+        DVec3::new(-meeting.point.x, -meeting.point.y, 0.0) / self.radius
+    }
+
+    fn again(&self, point: DVec3, direction: DVec3) -> f64 {
+        // The ray comes in where it starts; it can only go out.
+        let (_, inner) = self.crossings(point, direction);
+        inner
+    }
 }
 
 #[cfg(test)]

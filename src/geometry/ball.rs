@@ -6,7 +6,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{ConvexSphereScene, Family};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::specular::reflected;
 
 /// The ball, ready for rays.
@@ -68,6 +68,23 @@ impl Chains for Ball {
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
         self.meet(origin, direction)
             .is_some_and(|t| t > 0.0 && t < t_end)
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let t = self.meet(origin, direction).filter(|&t| t > 0.0)?;
+        let point = origin + direction * t;
+        let normal = (point - self.center) / self.radius;
+        Some(Vertex {
+            point,
+            direction: reflected(direction, normal),
+            normal,
+            weight: self.reflectance,
+        })
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let half = DVec3::splat(self.radius);
+        Some([self.center - half, self.center + half])
     }
 
     /// The floor, or a box around the ball.

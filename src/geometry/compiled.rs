@@ -34,41 +34,17 @@ use super::underwater::Underwater;
 use super::water::Water;
 use super::wedge::Wedge;
 
-/// A scene of a kind that every method knows: at most one specular interaction on either side of the floor.
-pub enum Compiled {
-    /// No specular surface.
-    Diffuse(Scene<Point, Nothing>),
-    /// Flat mirror.
-    PlanarMirror(Scene<Point, Rectangle>),
-    /// Vertical arc under a directional light.
-    CylinderCup(Scene<Directional, Arc>),
-    /// Flat water.
-    FlatInterface(Scene<Point, Water>),
-}
-
-impl Compiled {
-    /// Whether the entry is of such a kind.
-    pub fn knows(entry: &Entry) -> bool {
-        matches!(
-            entry.kind,
-            Kind::Diffuse(_)
-                | Kind::PlanarMirror(_)
-                | Kind::CylinderCup(_)
-                | Kind::FlatInterface(_)
-        )
-    }
-
-    /// Compiles a validated entry; `None` for the kinds that only [`visit`] knows.
-    pub fn new(entry: &Entry, overrides: Overrides) -> Option<Self> {
-        let build = Build::new(&entry.camera, overrides);
-        Some(match &entry.kind {
-            Kind::Diffuse(s) => Compiled::Diffuse(build.diffuse(s)),
-            Kind::PlanarMirror(s) => Compiled::PlanarMirror(build.planar_mirror(s)),
-            Kind::CylinderCup(s) => Compiled::CylinderCup(build.cylinder_cup(s)),
-            Kind::FlatInterface(s) => Compiled::FlatInterface(build.flat_interface(s)),
-            _ => return None,
-        })
-    }
+/// Whether light takes chains of specular interactions to a floor that is seen directly; otherwise there is at most one
+/// interaction on either side of the floor, or no floor.
+pub fn takes_chains(entry: &Entry) -> bool {
+    !matches!(
+        entry.kind,
+        Kind::Diffuse(_)
+            | Kind::PlanarMirror(_)
+            | Kind::CylinderCup(_)
+            | Kind::FlatInterface(_)
+            | Kind::Furnace(_)
+    )
 }
 
 /// What is done with a scene once its light and surface are known.

@@ -7,8 +7,9 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{ConicMirrorsScene, Family};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::quadratic::zeros;
+use super::scene::unit;
 use super::specular::reflected;
 
 /// The mirror, ready for rays.
@@ -109,6 +110,53 @@ impl Chains for Conic {
 
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
         self.meet(origin, direction).is_some_and(|(t, _)| t < t_end)
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let (t, true) = self.meet(origin, direction)? else {
+            return None;
+        };
+        let point = origin + direction * t;
+        let p = point - self.center;
+        let normal = -unit(DVec3::new(p.x * self.across, p.y * self.across, p.z));
+        Some(Vertex {
+            point,
+            direction: reflected(direction, normal),
+            normal,
+            weight: self.reflectance,
+        })
+    }
+
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        // The zero that is not the vertex itself.
+        let [a, b, _] = self.quadratic(vertex.point, direction);
+        let t = -2.0 * b / a;
+        if t > 0.0 && self.is_mirror(vertex.point, direction, t) {
+            t
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let (a, [low, high]) = (self.semi_axis, self.range);
+        // An ellipsoid ends at its top, the upper sheet of a hyperboloid begins at its bottom.
+        let (low, high) = if self.across > 0.0 {
+            (low, a)
+        } else {
+            (a, high)
+        };
+        // The ellipsoid is widest in its middle, the hyperboloid at its rim.
+        let at = if self.across > 0.0 {
+            low.max(0.0)
+        } else {
+            high
+        };
+        let wide = f64::sqrt((a * a - at * at) / self.across);
+        Some([
+            self.center + DVec3::new(-wide, -wide, low),
+            self.center + DVec3::new(wide, wide, high),
+        ])
     }
 
     /// The floor, or a box around the mirror.

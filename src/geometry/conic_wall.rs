@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::ConicWallScene;
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex, bounding_box};
 use super::specular::reflected;
 
 /// The wall, ready for rays.
@@ -117,6 +117,61 @@ impl Chains for ConicWall {
         self.crossings(origin, direction)
             .into_iter()
             .any(|t| (t > 0.0) & (t < t_end) && self.on_wall(origin, direction, t).is_some())
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let meets = |t: f64| {
+            (t > 0.0)
+                .then(|| self.on_wall(origin, direction, t))
+                .flatten()
+        };
+        let [s, t] = self.crossings(origin, direction);
+        let (near, far) = if s < t { (s, t) } else { (t, s) };
+        let point = meets(near).or_else(|| meets(far))?;
+        let normal = -self.normal(point);
+        (direction.dot(normal) < 0.0).then(|| Vertex {
+            point,
+            direction: reflected(direction, normal),
+            normal,
+            weight: self.reflectance,
+        })
+    }
+
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        // Of the line's two points one is the vertex itself.
+        let [s, t] = self.crossings(vertex.point, direction);
+        let other = if f64::abs(s) > f64::abs(t) { s } else { t };
+        let met = (other > 0.0) && self.on_wall(vertex.point, direction, other).is_some();
+        if met { other } else { f64::INFINITY }
+    }
+
+    /// The ends of the arc, and where its tangent is along x or y: the tangent at θ is across (e + cos θ, sin θ).
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let mut angles = vec![-self.half_arc, self.half_arc];
+        for axis in [DVec2::X, DVec2::Y] {
+            // A direction u is extreme where it is along the normal: u_x sin θ - u_y cos θ = u_y e, that is
+            // sin(θ - δ) = u_y e with δ the angle of u.
+            let u = self.turned(axis);
+            let sine = u.y * self.eccentricity;
+            if f64::abs(sine) <= 1.0 {
+                let (tilt, turn) = (libm::asin(sine), libm::atan2(u.y, u.x));
+                angles.extend([turn + tilt, turn + core::f64::consts::PI - tilt]);
+            }
+        }
+        let point = |angle: f64| {
+            let (s, c) = libm::sincos(angle);
+            let theta = libm::atan2(s, c);
+            let length = self.parameter / (1.0 + self.eccentricity * c);
+            let margin = 1e-12;
+            let on_arc = f64::abs(theta) <= self.half_arc + margin && length > 0.0;
+            on_arc.then(|| self.focus + (self.axis * c + self.axis.perp() * s) * length)
+        };
+        let points: Vec<_> = angles
+            .into_iter()
+            .filter_map(point)
+            .flat_map(|p| [p.extend(0.0), p.extend(self.height)])
+            .collect();
+        bounding_box(&points)
     }
 
     /// The floor, or the corners of a polygon of tangents about the arc.

@@ -8,7 +8,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::ArcWall;
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex, corners};
 use super::specular::reflected;
 
 /// The wall, ready for rays.
@@ -137,6 +137,50 @@ impl Chains for CupWall {
         self.crossings(origin, direction).into_iter().any(met)
     }
 
+    fn strike(&self, chain: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let (mut point, mut direction, mut weight) = (origin, direction, 1.0);
+        let mut normal = None;
+        for n in 0..self.bounces(chain) {
+            let [into, out] = self.crossings(point, direction);
+            if n == 0 && self.on_wall(point, direction, into).is_some() {
+                return None;
+            }
+            point = self.on_wall(point, direction, out)?;
+            let inward = DVec3::new(-point.x, -point.y, 0.0) / self.radius;
+            normal = Some(inward);
+            direction = reflected(direction, inward);
+            weight *= self.reflectance;
+        }
+        Some(Vertex {
+            point,
+            direction,
+            normal: normal?,
+            weight,
+        })
+    }
+
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        // The ray comes in where it starts.
+        let [_, out] = self.crossings(vertex.point, direction);
+        match self.on_wall(vertex.point, direction, out) {
+            Some(_) => out,
+            None => f64::INFINITY,
+        }
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let (s, c) = libm::sincos(self.half_arc.min(core::f64::consts::PI));
+        let wide = if c > 0.0 {
+            self.radius * s
+        } else {
+            self.radius
+        };
+        Some([
+            DVec3::new(self.radius * c, -wide, 0.0),
+            DVec3::new(self.radius, wide, self.height),
+        ])
+    }
+
     /// The floor, or the box about the wall, or a part of its opening.
     fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {
         if self.bounces(chain) == 0 {
@@ -147,18 +191,6 @@ impl Chains for CupWall {
             let reach = floor.iter().map(far).fold(0.0, f64::max);
             return self.opening(travel, self.bounces(chain), reach);
         }
-        let (s, c) = libm::sincos(self.half_arc.min(core::f64::consts::PI));
-        let y_max = if c > 0.0 {
-            self.radius * s
-        } else {
-            self.radius
-        };
-        let mut corners = Vec::with_capacity(8);
-        for x in [self.radius * c, self.radius] {
-            for y in [-y_max, y_max] {
-                corners.extend([0.0, self.height].map(|z| DVec3::new(x, y, z)));
-            }
-        }
-        corners
+        self.bounds().map_or_else(Vec::new, corners)
     }
 }

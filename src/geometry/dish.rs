@@ -8,8 +8,9 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, ParaboloidScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::quadratic::zeros;
+use super::scene::unit;
 use super::specular::reflected;
 
 /// The mirror, ready for rays.
@@ -95,6 +96,43 @@ impl Chains for Dish {
         zeros(a, b, c)
             .into_iter()
             .any(|t| t > 0.0 && t < t_end && self.is_silvered(origin, direction, t))
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let [a, b, c] = self.quadratic(origin, direction);
+        let met = zeros(a, b, c)
+            .into_iter()
+            .filter(|&t| t > 0.0 && self.is_silvered(origin, direction, t));
+        let t = met.min_by(f64::total_cmp)?;
+        let point = origin + direction * t;
+        let p = point - self.vertex;
+        let normal = -unit(DVec3::new(p.x, p.y, 0.5 * self.latus));
+        // What comes from outside is absorbed.
+        (direction.dot(normal) < 0.0).then(|| Vertex {
+            point,
+            direction: reflected(direction, normal),
+            normal,
+            weight: self.reflectance,
+        })
+    }
+
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        // The zero that is not the vertex itself.
+        let [a, b, _] = self.quadratic(vertex.point, direction);
+        let t = -2.0 * b / a;
+        if t > 0.0 && self.is_silvered(vertex.point, direction, t) {
+            t
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let z = |r: f64| -r * r / self.latus;
+        Some([
+            self.vertex + DVec3::new(-self.outer, -self.outer, z(self.outer)),
+            self.vertex + DVec3::new(self.outer, self.outer, z(self.inner)),
+        ])
     }
 
     /// The floor, or a box around the mirror.

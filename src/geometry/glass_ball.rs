@@ -8,7 +8,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, GlassSphereScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::dielectric::refract;
 use super::scene::unit;
 use super::specular::reflected;
@@ -33,6 +33,11 @@ impl GlassBall {
         }
     }
 
+    /// The number of interactions of a chain.
+    fn interactions(&self, chain: usize) -> usize {
+        self.classes.get(chain).map_or(0, |class| class.light.len())
+    }
+
     /// Length along the unit direction to the first point of the sphere, from outside; infinite where it is not met.
     fn meet(&self, origin: DVec3, d: DVec3) -> f64 {
         let o = origin - self.center;
@@ -53,8 +58,7 @@ impl Chains for GlassBall {
         let d = unit(direction);
         let t = self.meet(origin, d);
         let met = t < f64::INFINITY;
-        let interactions = self.classes.get(chain).map_or(0, |class| class.light.len());
-        if interactions == 0 {
+        if self.interactions(chain) == 0 {
             let weight = if met { 0.0 } else { 1.0 };
             return Leg {
                 origin,
@@ -62,35 +66,60 @@ impl Chains for GlassBall {
                 weight,
             };
         }
-        if !met {
-            return Leg::DARK;
-        }
-        let mut point = origin + d * t;
-        let mut normal = (point - self.center) / self.radius;
-        let (mut inside, f) = refract(d, normal, self.index);
-        if interactions == 1 {
-            return Leg {
+        match self.strike(chain, origin, d) {
+            Some(Vertex {
+                point,
+                direction,
+                weight,
+                ..
+            }) => Leg {
                 origin: point,
-                direction: reflected(d, normal),
+                direction,
+                weight,
+            },
+            None => Leg::DARK,
+        }
+    }
+
+    fn strike(&self, chain: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let t = self.meet(origin, direction);
+        if !(t < f64::INFINITY) {
+            return None;
+        }
+        let mut point = origin + direction * t;
+        let mut normal = (point - self.center) / self.radius;
+        let (mut inside, f) = refract(direction, normal, self.index);
+        let interactions = self.interactions(chain);
+        if interactions == 1 {
+            return Some(Vertex {
+                point,
+                direction: reflected(direction, normal),
+                normal,
                 weight: f,
-            };
+            });
         }
         let mut weight = 1.0 - f;
-        for left in (0..interactions - 1).rev() {
+        for left in (0..interactions.saturating_sub(1)).rev() {
             point += inside * (-2.0 * self.radius * inside.dot(normal));
             normal = (point - self.center) / self.radius;
             let (out, f) = refract(inside, -normal, 1.0 / self.index);
             if left == 0 {
-                return Leg {
-                    origin: point,
+                return Some(Vertex {
+                    point,
                     direction: out,
+                    normal,
                     weight: weight * (1.0 - f),
-                };
+                });
             }
             weight *= f;
             inside = reflected(inside, normal);
         }
-        Leg::DARK
+        None
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let half = DVec3::splat(self.radius);
+        Some([self.center - half, self.center + half])
     }
 
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {

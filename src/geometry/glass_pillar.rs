@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, GlassPillarScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::dielectric::refract;
 use super::pillar::Cylinder;
 use super::specular::reflected;
@@ -33,16 +33,17 @@ impl GlassPillar {
         }
     }
 
-    /// From the side through the glass to the side again; `None` if the ray ends on the floor before.
+    /// From the side through the glass to the side again; `None` if the ray ends on the floor, or at the top, before.
     fn across(&self, point: DVec3, direction: DVec3) -> Option<(DVec3, DVec3)> {
         let (_, t) = self.body.crossings(point, direction)?;
         let end = point + direction * t;
         let outward = (end.truncate() - self.body.center) / self.body.radius;
-        (end.z > 0.0).then(|| (end, -outward.extend(0.0)))
+        let on_side = (end.z > 0.0) & (end.z < self.body.height);
+        on_side.then(|| (end, -outward.extend(0.0)))
     }
 
     /// The way through the glass with `reflections` inside.
-    fn through(&self, point: DVec3, normal: DVec3, d: DVec3, reflections: usize) -> Option<Leg> {
+    fn through(&self, point: DVec3, normal: DVec3, d: DVec3, reflections: usize) -> Option<Vertex> {
         let (mut d, reflectance) = refract(d, normal, self.index);
         let mut weight = 1.0 - reflectance;
         let (mut point, mut normal) = self.across(point, d)?;
@@ -52,9 +53,11 @@ impl GlassPillar {
             (point, normal) = self.across(point, d)?;
         }
         let (out, reflectance) = refract(d, normal, 1.0 / self.index);
-        Some(Leg {
-            origin: point,
+        Some(Vertex {
+            point,
             direction: out,
+            // Inside, the normal was on the side of the glass.
+            normal: -normal,
             weight: weight * (1.0 - reflectance),
         })
     }
@@ -76,18 +79,36 @@ impl Chains for GlassPillar {
             };
         }
         let d = direction / f64::sqrt(direction.dot(direction));
-        let Some((point, normal)) = self.body.enter(origin, d) else {
-            return Leg::DARK;
-        };
-        if chain == 1 {
-            return Leg {
+        match self.strike(chain, origin, d) {
+            Some(Vertex {
+                point,
+                direction,
+                weight,
+                ..
+            }) => Leg {
                 origin: point,
-                direction: reflected(d, normal),
-                weight: refract(d, normal, self.index).1,
-            };
+                direction,
+                weight,
+            },
+            None => Leg::DARK,
         }
-        self.through(point, normal, d, chain - 2)
-            .unwrap_or(Leg::DARK)
+    }
+
+    fn strike(&self, chain: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let (point, normal) = self.body.enter(origin, direction)?;
+        if chain == 1 {
+            return Some(Vertex {
+                point,
+                direction: reflected(direction, normal),
+                normal,
+                weight: refract(direction, normal, self.index).1,
+            });
+        }
+        self.through(point, normal, direction, chain.checked_sub(2)?)
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        Some(self.body.bounds())
     }
 
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {

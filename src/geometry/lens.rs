@@ -7,7 +7,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, StigmaticRefractorsScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::dielectric::refract;
 use super::scene::unit;
 
@@ -42,31 +42,102 @@ impl Lens {
             classes: scene.classes(),
         }
     }
+
+    /// Ray parameters at which a line enters and leaves the ellipsoid; NaN where it misses.
+    fn crossings(&self, origin: DVec3, direction: DVec3) -> [f64; 2] {
+        let o = (origin - self.center) / self.axes;
+        let d = direction / self.axes;
+        let (a, b) = (d.dot(d), o.dot(d));
+        let root = f64::sqrt(b * b - a * (o.dot(o) - 1.0));
+        [-(b + root) / a, (root - b) / a]
+    }
+
+    /// The unit normal on the side of the air.
+    fn normal(&self, point: DVec3) -> DVec3 {
+        unit((point - self.center) / (self.axes * self.axes))
+    }
+
+    /// Refraction of a ray that comes from the side of `normal`.
+    fn vertex(&self, point: DVec3, normal: DVec3, direction: DVec3, n: f64) -> Option<Vertex> {
+        let (direction, f) = refract(direction, normal, n);
+        (f < 1.0).then(|| Vertex {
+            point,
+            direction,
+            normal: -normal,
+            weight: 1.0 - f,
+        })
+    }
 }
 
 impl Chains for Lens {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }
 
     fn follow(&self, _: usize, origin: DVec3, direction: DVec3) -> Leg {
-        let o = (origin - self.center) / self.axes;
-        let d = direction / self.axes;
-        let (a, b) = (d.dot(d), o.dot(d));
-        let root = f64::sqrt(b * b - a * (o.dot(o) - 1.0));
-        let t = -(b + root) / a;
+        let [t, _] = self.crossings(origin, direction);
         let point = origin + direction * t;
         // NaN, and thus no entry, where the ray misses.
         if !(t > 0.0 && point.z >= self.screen_z) {
             return Leg::DARK;
         }
-        let normal = unit((point - self.center) / (self.axes * self.axes));
+        let normal = self.normal(point);
         let (inside, f) = refract(unit(direction), normal, self.index);
         Leg {
             origin: point,
             direction: inside,
             weight: 1.0 - f,
         }
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let [enters, _] = self.crossings(origin, direction);
+        let point = origin + direction * enters;
+        // NaN, and thus no entry, where the ray misses.
+        if !(enters > 0.0 && point.z >= self.screen_z) {
+            return None;
+        }
+        self.vertex(point, self.normal(point), direction, self.index)
+    }
+
+    /// From below a ray reaches the surface only through the opening of the screen: where it crosses the screen's plane it is
+    /// inside the ellipsoid.
+    fn trace_back(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let [enters, leaves] = self.crossings(origin, direction);
+        let at_screen = (self.screen_z - origin.z) / direction.z;
+        if !(direction.z > 0.0 && enters < at_screen && at_screen <= leaves) {
+            return None;
+        }
+        let point = origin + direction * leaves;
+        self.vertex(point, -self.normal(point), direction, 1.0 / self.index)
+    }
+
+    /// Outside nothing comes back to the convex front. Inside, a ray that leaves the ellipsoid above the screen meets its
+    /// front again; any other one goes through the opening.
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        let outside = vertex.normal.dot(self.normal(vertex.point)) > 0.0;
+        let [_, leaves] = self.crossings(vertex.point, direction);
+        let above = vertex.point.z + direction.z * leaves >= self.screen_z;
+        if !outside && above {
+            leaves
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The screen is unbounded.
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    fn radiance_gain(&self) -> f64 {
+        self.index * self.index
+    }
+
+    fn exposed(&self, _: DVec3, _: f64) -> Option<Vec<DVec3>> {
+        Some(self.targets(0, &[]))
     }
 
     /// Whatever crosses the plane of the screen meets the screen, or the lens above it.

@@ -6,6 +6,8 @@ use super::emission::{Beam, Cap, Cone, Emitter};
 
 /// A light that illuminates a point from one direction.
 pub trait Light: Copy + Send + Sync + 'static {
+    /// Whether its light is parallel.
+    const IS_DISTANT: bool;
     /// How photons start.
     type Emitter: Emitter;
     /// How photons start that are aimed at one thing.
@@ -22,8 +24,14 @@ pub trait Light: Copy + Send + Sync + 'static {
     /// cross-section that covers the targets from a directional one.
     fn unaimed(&self, targets: &[DVec3]) -> Self::Emitter;
 
+    /// The same where nothing that stands in the photons' way is higher than `highest` [m].
+    fn spread(&self, targets: &[DVec3], highest: f64) -> Self::Emitter;
+
     /// Direction from a point towards the light (not normalised) and the ray parameter of the light along it.
     fn towards(&self, point: DVec3) -> (DVec3, f64);
+
+    /// Where it is [m]; `None` if its light is parallel.
+    fn position(&self) -> Option<DVec3>;
 
     /// Irradiance on a plane perpendicular to the light's direction, at a point from which `towards` gave `direction`
     /// [W/m²]: I/d² or E₀.
@@ -40,8 +48,13 @@ pub struct Point {
 }
 
 impl Light for Point {
+    const IS_DISTANT: bool = false;
     type Emitter = Cap;
     type Narrow = Cone;
+
+    fn position(&self) -> Option<DVec3> {
+        Some(self.position)
+    }
 
     fn aimed(&self, targets: &[DVec3]) -> Cap {
         self.towards_hull(targets)
@@ -52,6 +65,10 @@ impl Light for Point {
     }
 
     fn unaimed(&self, _: &[DVec3]) -> Cap {
+        self.everywhere()
+    }
+
+    fn spread(&self, _: &[DVec3], _: f64) -> Cap {
         self.everywhere()
     }
 
@@ -76,8 +93,13 @@ pub struct Directional {
 }
 
 impl Light for Directional {
+    const IS_DISTANT: bool = true;
     type Emitter = Beam;
     type Narrow = Beam;
+
+    fn position(&self) -> Option<DVec3> {
+        None
+    }
 
     fn aimed(&self, targets: &[DVec3]) -> Beam {
         self.towards_hull(targets)
@@ -89,6 +111,10 @@ impl Light for Directional {
 
     fn unaimed(&self, targets: &[DVec3]) -> Beam {
         self.towards_hull(targets)
+    }
+
+    fn spread(&self, targets: &[DVec3], highest: f64) -> Beam {
+        self.beam(targets, highest)
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::PillarScene;
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::specular::reflected;
 
 /// A solid cylinder from z = 0 up.
@@ -52,6 +52,15 @@ impl Cylinder {
         };
         let (low, high) = (z(enter).min(z(leave)), z(enter).max(z(leave)));
         (enter < leave) & (low < self.height) & (high > 0.0)
+    }
+
+    /// Low and high corner of the circumscribed box.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let half = DVec2::splat(self.radius);
+        [
+            (self.center - half).extend(0.0),
+            (self.center + half).extend(self.height),
+        ]
     }
 
     /// The points of the circumscribed box.
@@ -128,6 +137,20 @@ impl Chains for Pillar {
 
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
         self.body.blocks(origin, direction, t_end)
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let (point, normal) = self.body.enter(origin, direction)?;
+        Some(Vertex {
+            point,
+            direction: reflected(direction, normal),
+            normal,
+            weight: self.reflectance,
+        })
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        Some(self.body.bounds())
     }
 
     fn targets(&self, chain: usize, floor: &[DVec3]) -> Vec<DVec3> {

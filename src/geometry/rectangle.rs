@@ -72,6 +72,10 @@ impl Specular for Rectangle {
         let (t, met) = self.crossing(origin, direction);
         met & (t < t_end)
     }
+
+    fn normal_after(&self, _: &Meeting) -> DVec3 {
+        self.normal
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, GlassSlabScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::dielectric::reflectance;
 
 /// The slab, ready for rays.
@@ -29,9 +29,33 @@ impl Slab {
             classes: scene.classes(),
         }
     }
+
+    /// Where a ray with a unit direction, from either side, leaves the slab by a chain, and its weight there.
+    fn through(&self, chain: usize, origin: DVec3, d: DVec3) -> (DVec3, f64) {
+        let (near, far) = if d.z < 0.0 {
+            (self.top, self.bottom)
+        } else {
+            (self.bottom, self.top)
+        };
+        let inside = d.x * d.x + d.y * d.y;
+        let cosine = f64::sqrt(1.0 - inside / (self.index * self.index));
+        let f = reflectance(f64::abs(d.z), cosine, self.index);
+        // Across, 2k reflections, across again: thickness × (2k + 1) at the slope inside.
+        let passes = 2.0 * chain as f64 + 1.0;
+        let entry = origin + d * ((near - origin.z) / d.z);
+        let slope = 1.0 / (self.index * cosine);
+        let shift = passes * (self.top - self.bottom) * slope;
+        let weight = (0..2 * chain).fold((1.0 - f) * (1.0 - f), |w, _| w * f);
+        (
+            DVec3::new(entry.x + d.x * shift, entry.y + d.y * shift, far),
+            weight,
+        )
+    }
 }
 
 impl Chains for Slab {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }
@@ -41,20 +65,30 @@ impl Chains for Slab {
         if !(d.z < 0.0) {
             return Leg::DARK;
         }
-        let inside = d.x * d.x + d.y * d.y;
-        let cosine = f64::sqrt(1.0 - inside / (self.index * self.index));
-        let f = reflectance(-d.z, cosine, self.index);
-        // From the top down, 2k reflections, down again: thickness × (2k + 1) at the slope inside.
-        let passes = 2.0 * chain as f64 + 1.0;
-        let entry = origin + d * ((self.top - origin.z) / d.z);
-        let slope = 1.0 / (self.index * cosine);
-        let shift = passes * (self.top - self.bottom) * slope;
-        let weight = (0..2 * chain).fold((1.0 - f) * (1.0 - f), |w, _| w * f);
+        let (origin, weight) = self.through(chain, origin, d);
         Leg {
-            origin: DVec3::new(entry.x + d.x * shift, entry.y + d.y * shift, self.bottom),
+            origin,
             direction: d,
             weight,
         }
+    }
+
+    fn strike(&self, chain: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        if !(f64::abs(direction.z) > 0.0) {
+            return None;
+        }
+        let (point, weight) = self.through(chain, origin, direction);
+        let normal = DVec3::new(0.0, 0.0, f64::copysign(1.0, direction.z));
+        Some(Vertex {
+            point,
+            direction,
+            normal,
+            weight,
+        })
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        None
     }
 
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {

@@ -34,6 +34,15 @@ pub trait Specular: Copy + Send + Sync + 'static {
         Vec::new()
     }
 
+    /// Unit normal of the surface at a meeting, on the side to which the ray goes on.
+    fn normal_after(&self, meeting: &Meeting) -> DVec3;
+
+    /// Ray parameter at which a ray that leaves a point of the surface on its reflecting side meets it again; infinite where
+    /// it does not.
+    fn again(&self, _point: DVec3, _direction: DVec3) -> f64 {
+        f64::INFINITY
+    }
+
     /// What radiance is multiplied by, apart from the weight, when it leaves through the surface towards the side of the
     /// camera: 1/n² out of a medium of index n, because L/n² is conserved.
     fn radiance_scale(&self) -> f64 {
@@ -61,6 +70,10 @@ impl Specular for Nothing {
     #[inline(always)]
     fn blocks(&self, _: DVec3, _: DVec3, _: f64) -> bool {
         false
+    }
+
+    fn normal_after(&self, _: &Meeting) -> DVec3 {
+        DVec3::Z
     }
 }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{ConcaveSphereScene, Family};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::specular::reflected;
 
 /// The cap, ready for rays.
@@ -43,6 +43,11 @@ impl SphereCap {
         [-b - root, -b + root]
     }
 
+    /// Ray parameter from a point of the sphere to the sphere again: the root that is not zero.
+    fn chord(&self, point: DVec3, direction: DVec3) -> f64 {
+        -2.0 * (point - self.center).dot(direction) / direction.dot(direction)
+    }
+
     fn on_cap(&self, o: DVec3, d: DVec3, t: f64) -> bool {
         o.z + d.z * t >= self.rim_z
     }
@@ -71,8 +76,7 @@ impl Chains for SphereCap {
         }
         let point = origin + direction * leaves;
         let direction = reflected(direction, (point - self.center) / self.radius);
-        // From a point on the sphere to the sphere again: the root that is not zero.
-        let again = -2.0 * (point - self.center).dot(direction) / direction.dot(direction);
+        let again = self.chord(point, direction);
         if self.on_cap(point, direction, again) {
             return Leg::DARK;
         }
@@ -87,6 +91,45 @@ impl Chains for SphereCap {
         self.crossings(origin, direction)
             .iter()
             .any(|&t| t > 0.0 && t < t_end && self.on_cap(origin, direction, t))
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let [enters, leaves] = self.crossings(origin, direction);
+        let meets = |t: f64| t > 0.0 && self.on_cap(origin, direction, t);
+        if meets(enters) || !meets(leaves) {
+            return None;
+        }
+        let point = origin + direction * leaves;
+        let normal = (self.center - point) / self.radius;
+        Some(Vertex {
+            point,
+            direction: reflected(direction, normal),
+            normal,
+            weight: self.reflectance,
+        })
+    }
+
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        let t = self.chord(vertex.point, direction);
+        if self.on_cap(vertex.point, direction, t) {
+            t
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        let up = self.rim_z - self.center.z;
+        // Below the middle of the sphere the rim is not the widest part.
+        let wide = if up > 0.0 {
+            f64::sqrt(self.radius * self.radius - up * up)
+        } else {
+            self.radius
+        };
+        Some([
+            self.center + DVec3::new(-wide, -wide, up),
+            self.center + DVec3::new(wide, wide, self.radius),
+        ])
     }
 
     /// The floor, or a box around the cap.

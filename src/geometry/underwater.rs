@@ -5,7 +5,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, UnderwaterScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::specular::Specular;
 use super::water::Water;
 
@@ -29,6 +29,8 @@ impl Underwater {
 }
 
 impl Chains for Underwater {
+    const REFRACTS: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }
@@ -48,6 +50,24 @@ impl Chains for Underwater {
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
         let t = (self.surface_z - origin.z) / direction.z;
         (t > 0.0) & (t < t_end)
+    }
+
+    fn strike(&self, _: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let meeting = self.surface.meet(origin, direction);
+        (meeting.weight > 0.0).then(|| Vertex {
+            point: meeting.point,
+            direction: meeting.direction,
+            normal: self.surface.normal_after(&meeting),
+            weight: meeting.weight,
+        })
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    fn radiance_gain(&self) -> f64 {
+        1.0 / self.surface.radiance_scale()
     }
 
     /// In the air a ray is flatter than the straight line to where it lands, and steeper than the line to the point of the

@@ -77,6 +77,10 @@ impl Specular for Water {
         true
     }
 
+    fn normal_after(&self, meeting: &Meeting) -> DVec3 {
+        DVec3::new(0.0, 0.0, f64::copysign(1.0, meeting.direction.z))
+    }
+
     fn radiance_scale(&self) -> f64 {
         1.0 / (self.index * self.index)
     }

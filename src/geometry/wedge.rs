@@ -4,7 +4,7 @@ use glam::DVec3;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Family, PlanarChainsScene};
 
-use super::chains::{Chains, Leg};
+use super::chains::{Chains, Leg, Vertex};
 use super::floor::Floor;
 use super::specular::reflected;
 
@@ -72,6 +72,36 @@ impl Chains for Wedge {
 
     fn blocks(&self, origin: DVec3, direction: DVec3, t_end: f64) -> bool {
         self.first(origin, direction).1 < t_end
+    }
+
+    /// Between the mirrors nothing is in the way: the wedge is convex.
+    fn strike(&self, chain: usize, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        let (mut point, mut direction, mut weight) = (origin, direction, 1.0);
+        let mut normal = None;
+        for _ in 0..chain {
+            let (mirror, t) = self.first(point, direction);
+            if !(t < Floor::meet(point, direction)) {
+                return None;
+            }
+            point += direction * t;
+            normal = Some(self.normals[mirror]);
+            direction = reflected(direction, self.normals[mirror]);
+            weight *= self.reflectance;
+        }
+        Some(Vertex {
+            point,
+            direction,
+            normal: normal?,
+            weight,
+        })
+    }
+
+    fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
+        self.first(vertex.point, direction).1
+    }
+
+    fn bounds(&self) -> Option<[DVec3; 2]> {
+        None
     }
 
     /// The floor and its images: a chain of reflections is a straight line to one of them.

@@ -5,6 +5,7 @@
 //! Fresnel factors of the chain as its weight.
 
 use glam::DVec3;
+use nephroid_analytic::class::PathClass;
 
 use crate::film::Film;
 use crate::geometry::chains::Chains;
@@ -173,6 +174,33 @@ impl<L: Light, S: Chains> Prepared for LightChains<L, S> {
     }
 }
 
+/// The floor point that a ray from the pinhole meets; `None` where there is none, or a surface is in the way.
+pub(super) fn seen_vertex<L: Light, S: Chains>(
+    scene: &Scene<L, S>,
+    direction: DVec3,
+) -> Option<DVec3> {
+    let origin = scene.camera.position;
+    let t = Floor::meet(origin, direction);
+    let (x, y) = (origin.x + direction.x * t, origin.y + direction.y * t);
+    let met = t < f64::INFINITY && scene.floor.contains(x, y);
+    (met && !scene.surface.blocks(origin, direction, t)).then(|| DVec3::new(x, y, 0.0))
+}
+
+/// Radiance that direct light leaves a floor point with, by next event estimation.
+pub(super) fn direct_radiance<L: Light, S: Chains>(
+    scene: &Scene<L, S>,
+    defect: &Defect,
+    vertex: DVec3,
+) -> f64 {
+    let (towards, t_end) = scene.light.towards(vertex);
+    let cosine = towards.z / f64::sqrt(towards.dot(towards));
+    if !(cosine > 0.0) || scene.surface.blocks(vertex, towards, t_end) {
+        return 0.0;
+    }
+    let irradiance = scene.light.normal_irradiance(towards) * cosine;
+    scene.floor.bsdf * irradiance * defect.beside_own_cosine(cosine)
+}
+
 /// Next event estimation at the floor point seen in a pixel.
 pub(super) struct DirectLight<L, S> {
     scene: Scene<L, S>,
@@ -183,42 +211,17 @@ impl<L: Light, S: Chains> DirectLight<L, S> {
     pub(super) fn new(scene: Scene<L, S>, defect: Defect) -> Self {
         DirectLight { scene, defect }
     }
-
-    /// Radiance towards the pinhole from the floor point that a ray from it meets; 0 where there is none.
-    fn radiance(&self, direction: DVec3) -> f64 {
-        let Scene {
-            light,
-            surface,
-            floor,
-            camera,
-        } = &self.scene;
-        let origin = camera.position;
-        let t = Floor::meet(origin, direction);
-        let (x, y) = (origin.x + direction.x * t, origin.y + direction.y * t);
-        if !(t < f64::INFINITY && floor.contains(x, y)) || surface.blocks(origin, direction, t) {
-            return 0.0;
-        }
-        let vertex = DVec3::new(x, y, 0.0);
-        let (towards, t_end) = light.towards(vertex);
-        let cosine = towards.z / f64::sqrt(towards.dot(towards));
-        if !(cosine > 0.0) || surface.blocks(vertex, towards, t_end) {
-            return 0.0;
-        }
-        let irradiance = light.normal_irradiance(towards) * cosine;
-        floor.bsdf * irradiance * self.defect.beside_own_cosine(cosine)
-    }
 }
 
 impl<L: Light, S: Chains> Prepared for DirectLight<L, S> {
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, _bandwidth: f64, film: &mut Film) {
         film.paths += paths;
-        const LDE: nephroid_analytic::class::PathClass = nephroid_analytic::class::PathClass::LDE;
-        let Some(layer) = film.layer_of(LDE) else {
+        let Some(layer) = film.layer_of(PathClass::LDE) else {
             return;
         };
         let camera = &self.scene.camera;
         let (columns, rows) = camera.size();
-        let scale = camera.pixels() * self.defect.class_scale(LDE);
+        let scale = camera.pixels() * self.defect.class_scale(PathClass::LDE);
         let stream = Stream::new(seed, iteration);
         let (mut u, mut v): (Lanes, Lanes) = (zeros(), zeros());
         for first in (0..paths).step_by(BLOCK) {
@@ -226,7 +229,10 @@ impl<L: Light, S: Chains> Prepared for DirectLight<L, S> {
             stream.pairs(first, Dimension::Film, &mut u, &mut v);
             for (&u, &v) in u.iter().zip(&v).take(live) {
                 let (column, row) = (u * columns, v * rows);
-                let value = scale * self.radiance(camera.direction(column, row));
+                let Some(vertex) = seen_vertex(&self.scene, camera.direction(column, row)) else {
+                    continue;
+                };
+                let value = scale * direct_radiance(&self.scene, &self.defect, vertex);
                 if value > 0.0 {
                     add(film, layer, column, row, value);
                     film.nonzero[layer] += 1;

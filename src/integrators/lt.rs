@@ -12,7 +12,7 @@ use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
 use crate::geometry::chains::Chains;
-use crate::geometry::compiled::{Compiled, Visitor, visit};
+use crate::geometry::compiled::{Visitor, takes_chains, visit};
 use crate::geometry::emission::Emitter;
 use crate::geometry::furnace::Furnace;
 use crate::geometry::light::Light;
@@ -62,12 +62,12 @@ impl Integrator for Lt {
                 ClassPlan {
                     class,
                     treatment: Treatment::Exact(Technique::LightTracing),
-                    reason: if Compiled::knows(entry) {
-                        "photons, uniform over the smallest downward cap (or beam) that contains floor and specular \
-                         surface, connected to the pinhole from the floor"
-                    } else {
+                    reason: if takes_chains(entry) || entry.kind.floor().is_none() {
                         "photons, uniform over a cone (or beam) about what the class meets first, connected to the \
                          pinhole from the floor"
+                    } else {
+                        "photons, uniform over the smallest downward cap (or beam) that contains floor and specular \
+                         surface, connected to the pinhole from the floor"
                     }
                     .to_owned(),
                 }

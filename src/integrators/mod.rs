@@ -7,19 +7,23 @@
 pub mod accumulate;
 mod camera_paths;
 mod chains;
+mod connection;
 mod defect;
 mod deviation;
 mod fault;
 mod furnace;
 pub mod kernel;
 mod lt;
+mod merged_chains;
 mod photon_grid;
 mod photon_mapping;
 mod plan;
 mod pm;
 mod ppm;
+pub mod probes;
 mod pt;
 mod pt_reg;
+mod regularized_chains;
 pub mod schedule;
 mod settings;
 
@@ -38,7 +42,6 @@ use nephroid_analytic::scene::Entry;
 
 use crate::error::Error;
 use crate::film::Film;
-use crate::geometry::compiled::Compiled;
 
 /// What an integrator does about one path class.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,14 +127,14 @@ pub trait Prepared: Send + Sync {
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
 }
 
-/// Whether the regularizing methods know the kind of the scene.
+/// Whether the regularizing methods know the kind of the scene: those with a floor.
 fn regularizes(entry: &Entry) -> Result<(), String> {
-    if Compiled::knows(entry) {
+    if entry.kind.floor().is_some() {
         return Ok(());
     }
     let kind = entry.kind.name();
     Err(format!(
-        "no exact expectation at finite bandwidth for the kind {kind}"
+        "nothing to regularize in the kind {kind}, which has no floor and no specular surface"
     ))
 }
 

@@ -13,8 +13,10 @@ use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
-use crate::geometry::compiled::Compiled;
+use crate::geometry::chains::Chains;
+use crate::geometry::compiled::{Visitor, takes_chains, visit};
 use crate::geometry::emission::Emitter;
+use crate::geometry::furnace::Furnace;
 use crate::geometry::light::Light;
 use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
@@ -24,6 +26,7 @@ use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
 use super::defect::Defect;
 use super::deviation::{Deviation, Sound};
 use super::kernel::{Kernel, RadiusKernel};
+use super::merged_chains::MergedChains;
 use super::photon_grid::{PhotonGrid, Photons};
 use super::plan::{next_event_plan, plan_of};
 use super::settings::Settings;
@@ -34,7 +37,7 @@ const MET: f64 = 128.0;
 /// Photons traced for a map, at least and at most: powers of two.
 const MAP: [u64; 2] = [1 << 12, 1 << 18];
 /// Photons traced to find out how dense they lie.
-const PILOT: u64 = 1 << 13;
+pub(super) const PILOT: u64 = 1 << 13;
 
 pub(super) fn kernel_of(settings: &Settings) -> Kernel {
     settings.kernel.unwrap_or(Kernel::Disc)
@@ -47,21 +50,43 @@ pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
             treatment: Treatment::Regularized(Technique::Merge),
             reason: format!(
                 "irregular: light and specular vertex are both singular; merged with photons that came through the \
-                 specular surface (uniform over the sphere of a point light, over the smallest beam that covers the \
-                 mirror of a directional one), {kernel} kernel on the distance on the floor"
+                 specular surface (uniform over the sphere of a point light, over the smallest beam that covers {} of \
+                 a directional one), {kernel} kernel on the distance on the floor",
+                if takes_chains(entry) {
+                    "what the class meets first"
+                } else {
+                    "the mirror"
+                }
             ),
         })
     })
 }
 
 pub(super) fn prepare(entry: &Entry, settings: &Settings) -> Box<dyn Prepared> {
-    let defect = Defect::new(settings.fault);
-    match Compiled::new(entry, defect.overrides()) {
-        Some(Compiled::Diffuse(scene)) => prepared(scene, settings, defect),
-        Some(Compiled::PlanarMirror(scene)) => prepared(scene, settings, defect),
-        Some(Compiled::CylinderCup(scene)) => prepared(scene, settings, defect),
-        Some(Compiled::FlatInterface(scene)) => prepared(scene, settings, defect),
-        None => Box::new(Unsupported),
+    let overrides = Defect::new(settings.fault).overrides();
+    let settings = *settings;
+    visit(entry, overrides, Prepare { settings })
+}
+
+/// What is prepared once the kind of the scene is known.
+struct Prepare {
+    settings: Settings,
+}
+
+impl Visitor for Prepare {
+    type Output = Box<dyn Prepared>;
+
+    fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        let defect = Defect::new(self.settings.fault);
+        prepared(scene, &self.settings, defect)
+    }
+
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        Box::new(MergedChains::new(scene, self.settings))
+    }
+
+    fn furnace(self, _: Furnace) -> Box<dyn Prepared> {
+        Box::new(Unsupported)
     }
 }
 
@@ -128,7 +153,7 @@ impl Work {
 }
 
 /// First path and number of paths of each block.
-fn blocks(start: u64, end: u64) -> impl Iterator<Item = (u64, usize)> {
+pub(super) fn blocks(start: u64, end: u64) -> impl Iterator<Item = (u64, usize)> {
     (start..end)
         .step_by(BLOCK)
         .map(move |first| (first, (end - first).min(BLOCK as u64) as usize))
@@ -153,17 +178,18 @@ impl<L: Light, S: Specular, D: Deviation> PhotonMapping<L, S, D> {
         }
         work.photons.x.len() as f64 / (PILOT as f64 * work.photons.area())
     }
+}
 
-    fn map_size(&self, radius: f64) -> u64 {
-        let met = self.density * 9.0 * radius * radius;
-        let [least, most] = MAP;
-        let mut size = least;
-        // No photon at all gives NaN, and the smallest map.
-        while size < most && (2 * size) as f64 * met <= MET {
-            size *= 2;
-        }
-        size
+/// Photons for a map, from their density per photon traced.
+pub(super) fn map_size(density: f64, radius: f64) -> u64 {
+    let met = density * 9.0 * radius * radius;
+    let [least, most] = MAP;
+    let mut size = least;
+    // No photon at all gives NaN, and the smallest map.
+    while size < most && (2 * size) as f64 * met <= MET {
+        size *= 2;
     }
+    size
 }
 
 impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
@@ -176,7 +202,7 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
         let stream = Stream::new(seed, iteration);
         let kernel = RadiusKernel::new(kernel_of(&self.settings), bandwidth, self.settings.fault);
         let mut work = Work::new();
-        let size = self.map_size(kernel.radius);
+        let size = map_size(self.density, kernel.radius);
         for start in (0..paths).step_by(size as usize) {
             let end = paths.min(start + size);
             if S::EXISTS {

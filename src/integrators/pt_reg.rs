@@ -13,7 +13,9 @@ use multiversion::multiversion;
 use nephroid_analytic::scene::Entry;
 
 use crate::film::Film;
-use crate::geometry::compiled::Compiled;
+use crate::geometry::chains::Chains;
+use crate::geometry::compiled::{Visitor, visit};
+use crate::geometry::furnace::Furnace;
 use crate::geometry::light::Light;
 use crate::geometry::scene::{Scene, unit};
 use crate::geometry::specular::Specular;
@@ -25,6 +27,7 @@ use super::defect::Defect;
 use super::deviation::{Deviation, Sound};
 use super::kernel::{AngleKernel, Kernel};
 use super::plan::{next_event_plan, plan_of};
+use super::regularized_chains::RegularizedChains;
 use super::settings::Settings;
 use super::{
     ClassPlan, Integrator, Plan, Prepared, Technique, Treatment, Unsupported, regularizes,
@@ -62,8 +65,13 @@ impl Integrator for PtReg {
                 treatment: Treatment::Regularized(Technique::Camera),
                 reason: format!(
                     "irregular: light and specular vertex are both singular; {} kernel on the angle at the specular \
-                     vertex next to the light, cosine-distributed direction from the floor",
-                    self.kernel
+                     vertex next to the light, cosine-distributed direction from the floor{}",
+                    self.kernel,
+                    match class.light.len() {
+                        0 | 1 => String::new(),
+                        2 => ", the other interaction exact".to_owned(),
+                        n => format!(", the other {} interactions exact", n - 1),
+                    }
                 ),
             })
         })
@@ -74,33 +82,45 @@ impl Integrator for PtReg {
     }
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {
-        let defect = Defect::new(self.settings.fault);
+        let overrides = Defect::new(self.settings.fault).overrides();
         let (kernel, settings) = (self.kernel, self.settings);
-        macro_rules! prepared {
-            ($scene:expr) => {
-                match settings.fault {
-                    None => Box::new(PreparedPtReg {
-                        scene: $scene,
-                        kernel,
-                        settings,
-                        defect: Sound,
-                    }),
-                    Some(_) => Box::new(PreparedPtReg {
-                        scene: $scene,
-                        kernel,
-                        settings,
-                        defect,
-                    }),
-                }
-            };
+        visit(entry, overrides, Prepare { kernel, settings })
+    }
+}
+
+/// What is prepared once the kind of the scene is known.
+struct Prepare {
+    kernel: Kernel,
+    settings: Settings,
+}
+
+impl Visitor for Prepare {
+    type Output = Box<dyn Prepared>;
+
+    fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        let Prepare { kernel, settings } = self;
+        match settings.fault {
+            None => Box::new(PreparedPtReg {
+                scene,
+                kernel,
+                settings,
+                defect: Sound,
+            }),
+            fault => Box::new(PreparedPtReg {
+                scene,
+                kernel,
+                settings,
+                defect: Defect::new(fault),
+            }),
         }
-        match Compiled::new(entry, defect.overrides()) {
-            Some(Compiled::Diffuse(scene)) => prepared!(scene),
-            Some(Compiled::PlanarMirror(scene)) => prepared!(scene),
-            Some(Compiled::CylinderCup(scene)) => prepared!(scene),
-            Some(Compiled::FlatInterface(scene)) => prepared!(scene),
-            None => Box::new(Unsupported),
-        }
+    }
+
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Box<dyn Prepared> {
+        Box::new(RegularizedChains::new(scene, self.kernel, self.settings))
+    }
+
+    fn furnace(self, _: Furnace) -> Box<dyn Prepared> {
+        Box::new(Unsupported)
     }
 }
 

@@ -12,6 +12,7 @@ pub mod betting;
 pub mod distributions;
 pub mod evidence;
 pub mod family;
+pub mod finding;
 pub mod heavy;
 pub mod hypotheses;
 pub mod power;

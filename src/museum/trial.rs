@@ -8,8 +8,8 @@ use super::exhibits::{Check, Stand, scene};
 use crate::diagnosis::{self, Known, Subject, means_at_half};
 use crate::error::Error;
 use crate::integrators::{Fault, Integrator, Kernel, Plan, Prepared, Settings, by_name};
+use crate::judge::finding::State;
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, LEVEL, Levels};
-use crate::judge::verdict::State;
 use crate::regions::Regions;
 use crate::verify::effort::Effort;
 use crate::verify::expected::{Expected, Truths};
@@ -148,7 +148,7 @@ impl Hall {
         seeds: Seeds,
         class: usize,
     ) -> Option<String> {
-        let expected = set_up.expected[class].as_ref().map(|e| e.image.value);
+        let expected = set_up.expected[class].as_ref().map(|e| e.first().value);
         let means = expected
             .zip(set_up.at_half[class])
             .map(|(mean, half)| [mean, half]);
@@ -245,7 +245,7 @@ impl SetUp {
 
     /// What the mean of each class over the image should be; `None` where it is not sampled.
     pub fn means(&self) -> Vec<Option<f64>> {
-        let value = |e: &Option<Expected>| e.as_ref().map(|e| e.image.value);
+        let value = |e: &Option<Expected>| e.as_ref().map(|e| e.first().value);
         self.expected.iter().map(value).collect()
     }
 

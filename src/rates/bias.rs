@@ -2,17 +2,16 @@
 
 use nephroid_analytic::bandwidth::{Bounded, Kernel, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, InvalidParameter};
+use nephroid_analytic::scene::InvalidParameter;
 
 use super::allocation::shares;
-use super::expected::{Expected, expected, mollified, sharp, unknown};
-use super::options::{Skipped, check_options, chosen};
+use super::classes::{Asked, Bandwidths, Skipped, Subject};
+use super::expected::{Expected, expected, sharp};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent, scale};
-use super::region::{View, interior};
+use super::region::View;
 use super::runs::{AtBandwidths, at_bandwidths};
 use super::variance::{VarianceTest, variance_test};
-use crate::integrators::{Integrator, Treatment};
 use crate::judge::distributions::{student_quantile, student_survival};
 use crate::judge::evidence::moments;
 use crate::verify::replicates::Seeds;
@@ -31,28 +30,12 @@ pub const REPLICATES: u32 = 64;
 
 /// What to measure.
 pub struct Request<'a> {
-    /// The scene.
-    pub entry: &'a Entry,
-    /// The integrator.
-    pub integrator: &'a dyn Integrator,
-    /// The mollifier that the integrator was built with; `None` for the technique's default.
-    pub kernel: Option<Kernel>,
-    /// The technique of the prediction; `None` for what the integrator's plan says.
-    pub technique: Option<Technique>,
+    /// What every study is asked.
+    pub asked: Asked<'a>,
     /// Angles [rad] or radii [m], at least two.
     pub bandwidths: &'a [f64],
-    /// Only this class.
-    pub class: Option<PathClass>,
-    /// Pixels x0, y0, x1, y1; `None` for an interior region.
-    pub region: Option<[u32; 4]>,
     /// Paths of one class in all; `None` for what takes some seconds.
     pub paths: Option<u64>,
-    /// Independent repetitions.
-    pub replicates: u32,
-    /// The seed.
-    pub seed: u64,
-    /// See [`LEVEL`].
-    pub level: f64,
     /// See [`HALF_WIDTH`].
     pub half_width: f64,
 }
@@ -136,61 +119,17 @@ const fn default_paths(technique: Technique) -> u64 {
 /// # Errors
 /// A region, a kernel, a technique or a bandwidth that does not fit; a kind without exact expectations.
 pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidParameter> {
-    let (mut studies, mut skipped) = (Vec::new(), Vec::new());
-    let plan = request.integrator.plan(request.entry);
-    check_options(&plan, request.technique, request.kernel, request.bandwidths)?;
-    for (layer, planned) in plan.iter().enumerate() {
-        let class = planned.class;
-        if request.class.is_some_and(|c| c != class) {
-            continue;
+    let bandwidths = Bandwidths {
+        named: request.bandwidths,
+        extremes: request.bandwidths,
+    };
+    let without_bias = Some("sampled without bias: there is no order to measure");
+    request.asked.each(&bandwidths, without_bias, |subject| {
+        match subject.technique {
+            Some(technique) => of_class(request, technique, subject),
+            None => Ok(None),
         }
-        let mut skip = |reason: &str| {
-            let reason = reason.to_owned();
-            skipped.push(Skipped { class, reason });
-        };
-        let technique = match planned.treatment {
-            Treatment::NotSampled => {
-                skip("not sampled by this integrator");
-                continue;
-            }
-            Treatment::Exact(_) => {
-                skip("sampled without bias: there is no order to measure");
-                continue;
-            }
-            Treatment::Regularized(t) => mollified(t),
-        };
-        let Some(technique) = chosen(technique, request.technique)? else {
-            skip("no exact expectation of this technique");
-            continue;
-        };
-        let kernel = request.kernel.unwrap_or(technique.default_kernel());
-        if let Some(reason) = unknown(request.entry, technique, kernel) {
-            skip(&reason);
-            continue;
-        }
-        let view =
-            match request.region {
-                Some(corners) => Some(View::pixels(request.entry, corners).map_err(|allowed| {
-                    InvalidParameter {
-                        key: "region".to_owned(),
-                        found: corners.map(|c| c.to_string()).join(","),
-                        allowed,
-                    }
-                })?),
-                None => interior(request.entry, class, technique, kernel, request.bandwidths)?,
-            };
-        match view {
-            Some(view) => match of_class(request, layer, class, technique, kernel, view)? {
-                Some(study) => studies.push(study),
-                None => skip("nothing of it in the region"),
-            },
-            None => skip(
-                "no part of the picture is farther from every edge than the kernel reaches with a bias of one sign: \
-                 use smaller bandwidths, or name a --region",
-            ),
-        }
-    }
-    Ok((studies, skipped))
+    })
 }
 
 /// Exact values of a region at the bandwidths.
@@ -217,12 +156,13 @@ impl Truth {
 
 fn of_class(
     request: &Request,
-    layer: usize,
-    class: PathClass,
     technique: Technique,
-    kernel: Kernel,
-    view: View,
+    Subject {
+        layer, class, view, ..
+    }: Subject,
 ) -> Result<Option<Study>, InvalidParameter> {
+    let asked = &request.asked;
+    let kernel = asked.kernel_of(technique);
     let Some(sharp) = sharp(&view, class)? else {
         return Ok(None);
     };
@@ -233,7 +173,7 @@ fn of_class(
     if truth.expected.iter().all(|e| e.mean.value <= 0.0) {
         return Ok(None);
     }
-    let replicates = request.replicates;
+    let replicates = asked.replicates;
     let total = request.paths.unwrap_or(default_paths(technique));
     let deviations = truth.expected.iter().map(|e| e.variance().max(0.0).sqrt());
     let noise: Vec<f64> = deviations
@@ -244,8 +184,8 @@ fn of_class(
         .iter()
         .map(|s| ((total as f64 * s / f64::from(replicates)) as u64).max(1))
         .collect();
-    let prepared = request.integrator.prepare(&view.entry);
-    let seeds = Seeds::new(request.seed, &request.entry.name, request.integrator.name());
+    let prepared = asked.integrator.prepare(&view.entry);
+    let seeds = Seeds::new(asked.seed, &asked.entry.name, asked.integrator.name());
     let rows = at_bandwidths(
         prepared.as_ref(),
         &view,
@@ -409,7 +349,7 @@ fn judge(
     }
     let half_width = exponent.half_width();
     let is_resolved = half_width <= request.half_width;
-    let share = request.level / tests.len().max(1) as f64;
+    let share = request.asked.level / tests.len().max(1) as f64;
     let quantiles = student_quantile(0.5 * share, count - 1.0) + student_quantile(0.1, count - 1.0);
     // Of the design, not of the data: with the exact bias for c.
     let a = design.contrast(predicted);
@@ -429,7 +369,7 @@ fn judge(
         predicted,
         scale: [factor, t * factor_error],
         detectable: quantiles * ideal_error,
-        state: state(&tests, request.level, is_resolved && is_fitted),
+        state: state(&tests, request.asked.level, is_resolved && is_fitted),
         tests,
         paths_needed: (!is_resolved)
             .then(|| total as f64 * (ideal_error / wanted) * (ideal_error / wanted) * 1.2),

@@ -5,37 +5,14 @@ use core::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::bias::{CONFIDENCE, FEWEST_CONTRIBUTIONS, Study};
-use super::options::Skipped;
-
-/// Numbers that JSON cannot hold become null.
-pub(super) fn number(v: f64) -> Value {
-    if v.is_finite() { json!(v) } else { Value::Null }
-}
-
-/// An interval, null where it is unbounded.
-pub(super) fn interval([low, high]: [f64; 2]) -> Value {
-    json!([number(low), number(high)])
-}
-
-/// An interval for people.
-pub(super) fn range([low, high]: [f64; 2]) -> String {
-    let bound = |v: f64| {
-        if v.is_finite() {
-            format!("{v:.3}")
-        } else {
-            "unbounded".to_owned()
-        }
-    };
-    format!("[{}, {}]", bound(low), bound(high))
-}
-
-/// Counts such as 3.2e8.
-pub(super) fn paths(n: f64) -> String {
-    format!("{n:.1e}")
-}
+use super::classes::Skipped;
+use super::report::{Heading, interval, number, paths, range, remarkable, tests_json};
 
 /// Paragraphs and a table for each class.
-pub fn bias_table(scene: &str, integrator: &str, studies: &[Study], skipped: &[Skipped]) -> String {
+pub fn bias_table(heading: &Heading, studies: &[Study], skipped: &[Skipped]) -> String {
+    let Heading {
+        scene, integrator, ..
+    } = heading;
     let mut out = String::new();
     for s in studies {
         let unit = if s.technique.bandwidth_is_angle() {
@@ -114,42 +91,17 @@ pub fn bias_table(scene: &str, integrator: &str, studies: &[Study], skipped: &[S
                 "  {left_out} of the bandwidths have fewer than {FEWEST_CONTRIBUTIONS} contributions and are not used: more paths"
             );
         }
-        let failed = s.tests.iter().filter(|t| !(t.p > 1e-3));
-        for test in failed {
-            let _ = writeln!(out, "  {}: p = {:.1e}", test.what, test.p);
-        }
+        remarkable(&mut out, &s.tests);
         out.push('\n');
     }
-    for s in skipped {
-        let _ = writeln!(out, "{scene}, {integrator}, {}: {}", s.class, s.reason);
-    }
+    heading.skipped(&mut out, skipped);
     out.trim_end().to_owned()
 }
 
 /// The schema `nephroid-bias/1`.
-pub fn bias_json(
-    scene: &str,
-    integrator: &str,
-    seed: u64,
-    level: f64,
-    studies: &[Study],
-    skipped: &[Skipped],
-) -> Value {
-    let classes: Vec<Value> = studies.iter().map(class).collect();
-    let skipped: Vec<Value> = skipped
-        .iter()
-        .map(|s| json!({ "class": s.class.to_string(), "reason": s.reason }))
-        .collect();
-    json!({
-        "schema": "nephroid-bias/1",
-        "scene": scene,
-        "integrator": integrator,
-        "seed": seed,
-        "level": level,
-        "confidence": CONFIDENCE,
-        "classes": classes,
-        "not_measured": skipped,
-    })
+pub fn bias_json(heading: &Heading, studies: &[Study], skipped: &[Skipped]) -> Value {
+    let classes = studies.iter().map(class).collect();
+    heading.document("nephroid-bias/1", classes, skipped)
 }
 
 fn class(s: &Study) -> Value {
@@ -175,11 +127,6 @@ fn class(s: &Study) -> Value {
             })
         })
         .collect();
-    let tests: Vec<Value> = s
-        .tests
-        .iter()
-        .map(|t| json!({ "hypothesis": t.what, "p": number(t.p) }))
-        .collect();
     json!({
         "class": s.class.to_string(),
         "technique": s.technique.name(),
@@ -201,6 +148,6 @@ fn class(s: &Study) -> Value {
         "paths_needed": s.paths_needed.map(number),
         "seconds": s.seconds,
         "points": points,
-        "tests": tests,
+        "tests": tests_json(&s.tests),
     })
 }

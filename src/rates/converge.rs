@@ -10,22 +10,22 @@
 //! (`theory/consistency.md`, section 1). An estimator without bias has slope −1 and no bias. Running means at n = 1, 2, 4, … share their
 //! samples; both fits allow for that (see `power_law` and `variance`).
 
-use nephroid_analytic::bandwidth::{Bounded, Kernel, Technique};
+use nephroid_analytic::bandwidth::{Bounded, Technique};
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::{Entry, InvalidParameter};
+use nephroid_analytic::scene::InvalidParameter;
 
 use super::bias::CONFIDENCE;
+use super::classes::{Asked, Bandwidths, Skipped, Subject};
 pub use super::events::Events;
 use super::events::{count_tests, events};
-use super::expected::{mollified, sharp, unknown};
-use super::law::{Law, bandwidths, kernel_of};
-use super::options::{Skipped, check_options, chosen};
+use super::expected::sharp;
+use super::law::{Law, bandwidths};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent};
-use super::region::{View, interior};
+use super::region::View;
 use super::runs::{Along, along};
 use super::variance::{Slope, slope_contrast, variance_slope};
-use crate::integrators::{Integrator, Schedule, Treatment};
+use crate::integrators::Schedule;
 use crate::judge::distributions::{student_quantile, student_survival};
 use crate::judge::evidence::moments;
 use crate::verify::replicates::Seeds;
@@ -45,32 +45,16 @@ const KNOWN_BIAS: f64 = 0.05;
 
 /// What to measure.
 pub struct Request<'a> {
-    /// The scene.
-    pub entry: &'a Entry,
-    /// The integrator.
-    pub integrator: &'a dyn Integrator,
-    /// The mollifier that the integrator was built with; `None` for the technique's default.
-    pub kernel: Option<Kernel>,
-    /// The technique of the prediction; `None` for what the integrator's plan says.
-    pub technique: Option<Technique>,
+    /// What every study is asked.
+    pub asked: Asked<'a>,
     /// The bandwidths that the integrator is given, iteration by iteration.
     pub schedule: &'a Schedule,
     /// The bandwidths of the prediction, if not those.
     pub predicted_schedule: Option<&'a Schedule>,
-    /// Only this class.
-    pub class: Option<PathClass>,
-    /// Pixels x0, y0, x1, y1; `None` for an interior region, or the whole image of a class without bias.
-    pub region: Option<[u32; 4]>,
     /// Iterations: a power of two.
     pub iterations: u32,
     /// Paths of each; `None` for what takes some seconds.
     pub paths_per_iteration: Option<u64>,
-    /// Independent repetitions.
-    pub replicates: u32,
-    /// The seed.
-    pub seed: u64,
-    /// Of all tests of a class together: the probability that a correct integrator is called different.
-    pub level: f64,
     /// See [`VARIANCE_HALF_WIDTH`] and [`BIAS_HALF_WIDTH`].
     pub half_widths: [f64; 2],
 }
@@ -154,95 +138,33 @@ const fn default_paths(technique: Option<Technique>) -> u64 {
 /// # Errors
 /// A region, a kernel, a technique or a bandwidth that does not fit; a kind without exact expectations.
 pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidParameter> {
-    let (mut studies, mut skipped) = (Vec::new(), Vec::new());
-    let plan = request.integrator.plan(request.entry);
-    let named = request.schedule.values();
-    check_options(&plan, request.technique, request.kernel, named)?;
-    for (layer, planned) in plan.iter().enumerate() {
-        let class = planned.class;
-        if request.class.is_some_and(|c| c != class) {
-            continue;
-        }
-        let mut skip = |reason: &str| {
-            let reason = reason.to_owned();
-            skipped.push(Skipped { class, reason });
-        };
-        let technique = match planned.treatment {
-            Treatment::NotSampled => {
-                skip("not sampled by this integrator");
-                continue;
-            }
-            Treatment::Exact(_) => None,
-            Treatment::Regularized(t) => {
-                let Some(t) = chosen(mollified(t), request.technique)? else {
-                    skip("no exact expectation of this technique");
-                    continue;
-                };
-                if let Some(reason) = unknown(request.entry, t, kernel_of(request, t)) {
-                    skip(&reason);
-                    continue;
-                }
-                Some(t)
-            }
-        };
-        let Some(view) = view(request, class, technique)? else {
-            skip(
-                "no part of the picture is farther from every edge than the kernel reaches with a bias of one sign: \
-                 use smaller bandwidths, or name a --region",
-            );
-            continue;
-        };
-        match of_class(request, layer, class, technique, view)? {
-            Some(study) => studies.push(study),
-            None => skip("nothing of it in the region"),
-        }
-    }
-    Ok((studies, skipped))
-}
-
-fn view(
-    request: &Request,
-    class: PathClass,
-    technique: Option<Technique>,
-) -> Result<Option<View>, InvalidParameter> {
-    if let Some(corners) = request.region {
-        let invalid = |allowed| InvalidParameter {
-            key: "region".to_owned(),
-            found: corners.map(|c| c.to_string()).join(","),
-            allowed,
-        };
-        return View::pixels(request.entry, corners)
-            .map(Some)
-            .map_err(invalid);
-    }
-    let Some(technique) = technique else {
-        let reason = "a class without bias needs no interior region";
-        return Ok(Some(View::whole(request.entry, reason)));
-    };
-    let all = bandwidths(request.schedule, request.iterations);
-    let low = all.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = all.iter().copied().fold(0.0, f64::max);
+    let schedule = bandwidths(request.schedule, request.iterations);
+    let low = schedule.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = schedule.iter().copied().fold(0.0, f64::max);
     let ends = if low < high {
         vec![low, high]
     } else {
         vec![high]
     };
-    interior(
-        request.entry,
-        class,
-        technique,
-        kernel_of(request, technique),
-        &ends,
-    )
+    let bandwidths = Bandwidths {
+        named: request.schedule.values(),
+        extremes: &ends,
+    };
+    request
+        .asked
+        .each(&bandwidths, None, |subject| of_class(request, subject))
 }
 
 fn of_class(
     request: &Request,
-    layer: usize,
-    class: PathClass,
-    technique: Option<Technique>,
-    view: View,
+    Subject {
+        layer,
+        class,
+        technique,
+        view,
+    }: Subject,
 ) -> Result<Option<Study>, InvalidParameter> {
+    let asked = &request.asked;
     let Some(sharp) = sharp(&view, class)? else {
         return Ok(None);
     };
@@ -254,15 +176,15 @@ fn of_class(
         return Ok(None);
     }
     let schedule = bandwidths(request.schedule, request.iterations);
-    let seeds = Seeds::new(request.seed, &request.entry.name, request.integrator.name());
+    let seeds = Seeds::new(asked.seed, &asked.entry.name, asked.integrator.name());
     let rows = along(
-        request.integrator.prepare(&view.entry).as_ref(),
+        asked.integrator.prepare(&view.entry).as_ref(),
         &view,
         layer,
         &schedule,
         paths,
         seeds,
-        request.replicates,
+        asked.replicates,
     );
     let merges = technique == Some(Technique::Merge);
     let events = events(&law, &rows, paths, merges);
@@ -343,10 +265,10 @@ fn of_class(
     }
 
     // Every mean, and the counts.
-    let dof = f64::from(request.replicates) - 1.0;
+    let dof = f64::from(asked.replicates) - 1.0;
     for p in &points {
         let distance = (p.mean - p.expected.value).abs() - p.expected.error;
-        let error = f64::sqrt(p.variance / f64::from(request.replicates));
+        let error = f64::sqrt(p.variance / f64::from(asked.replicates));
         // A mean of rare spikes is not normal enough for a t test; their number is tested instead.
         if p.is_normal {
             tests.push(Test {
@@ -373,11 +295,11 @@ fn of_class(
         paths_per_iteration: paths,
         variance,
         bias,
-        state: state(&tests, request.level, is_resolved),
+        state: state(&tests, asked.level, is_resolved),
         tests,
         remarks,
-        paths: paths * u64::from(request.iterations) * u64::from(request.replicates),
-        efficiency: last.0 * last.0 / (last.1 * seconds / f64::from(request.replicates)),
+        paths: paths * u64::from(request.iterations) * u64::from(asked.replicates),
+        efficiency: last.0 * last.0 / (last.1 * seconds / f64::from(asked.replicates)),
         seconds,
         points,
     }))

@@ -5,18 +5,16 @@ use core::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::bias::CONFIDENCE;
-use super::bias_report::{interval, number, paths, range};
+use super::classes::Skipped;
 use super::converge::Study;
-use super::options::Skipped;
+use super::report::{Heading, interval, number, paths, range, remarkable, tests_json};
 
 /// Paragraphs and a table for each class.
-pub fn converge_table(
-    scene: &str,
-    integrator: &str,
-    schedule: &str,
-    studies: &[Study],
-    skipped: &[Skipped],
-) -> String {
+pub fn converge_table(heading: &Heading, studies: &[Study], skipped: &[Skipped]) -> String {
+    let Heading {
+        scene, integrator, ..
+    } = heading;
+    let schedule = heading.schedule.unwrap_or_default();
     let mut out = String::new();
     for s in studies {
         let technique = s.technique.map_or("without bias".to_owned(), |t| {
@@ -99,43 +97,17 @@ pub fn converge_table(
         for remark in &s.remarks {
             let _ = writeln!(out, "  {remark}");
         }
-        for test in s.tests.iter().filter(|t| !(t.p > 1e-3)) {
-            let _ = writeln!(out, "  {}: p = {:.1e}", test.what, test.p);
-        }
+        remarkable(&mut out, &s.tests);
         out.push('\n');
     }
-    for s in skipped {
-        let _ = writeln!(out, "{scene}, {integrator}, {}: {}", s.class, s.reason);
-    }
+    heading.skipped(&mut out, skipped);
     out.trim_end().to_owned()
 }
 
 /// The schema `nephroid-converge/1`.
-pub fn converge_json(
-    scene: &str,
-    integrator: &str,
-    schedule: &str,
-    seed: u64,
-    level: f64,
-    studies: &[Study],
-    skipped: &[Skipped],
-) -> Value {
-    let classes: Vec<Value> = studies.iter().map(class).collect();
-    let skipped: Vec<Value> = skipped
-        .iter()
-        .map(|s| json!({ "class": s.class.to_string(), "reason": s.reason }))
-        .collect();
-    json!({
-        "schema": "nephroid-converge/1",
-        "scene": scene,
-        "integrator": integrator,
-        "schedule": schedule,
-        "seed": seed,
-        "level": level,
-        "confidence": CONFIDENCE,
-        "classes": classes,
-        "not_measured": skipped,
-    })
+pub fn converge_json(heading: &Heading, studies: &[Study], skipped: &[Skipped]) -> Value {
+    let classes = studies.iter().map(class).collect();
+    heading.document("nephroid-converge/1", classes, skipped)
 }
 
 fn class(s: &Study) -> Value {
@@ -167,11 +139,6 @@ fn class(s: &Study) -> Value {
             })
         })
         .collect();
-    let tests: Vec<Value> = s
-        .tests
-        .iter()
-        .map(|t| json!({ "hypothesis": t.what, "p": number(t.p) }))
-        .collect();
     let variance = s.variance.map(|(slope, predicted)| {
         json!({
             "fitted": number(slope.fitted), "predicted": predicted,
@@ -202,6 +169,6 @@ fn class(s: &Study) -> Value {
         "paths": s.paths,
         "seconds": s.seconds,
         "points": points,
-        "tests": tests,
+        "tests": tests_json(&s.tests),
     })
 }

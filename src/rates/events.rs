@@ -80,7 +80,7 @@ pub(super) fn count_tests(
         let Some(events) = p.events else {
             continue;
         };
-        let replicates = f64::from(request.replicates);
+        let replicates = f64::from(request.asked.replicates);
         let trials = replicates * iterations * if merges { 1.0 } else { paths as f64 };
         tests.push(Test {
             what: format!(

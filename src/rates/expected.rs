@@ -9,7 +9,6 @@ use rayon::prelude::*;
 
 use super::region::View;
 use crate::expectation::Interpolation;
-use crate::integrators;
 
 /// Relative tolerance of means: a hundredth of a bias of 1e-4.
 const TOLERANCE: f64 = 1e-6;
@@ -17,15 +16,6 @@ const TOLERANCE: f64 = 1e-6;
 const TOLERANCE_WITH_EDGES: f64 = 2e-5;
 /// Longer schedules are interpolated between so many bandwidths.
 const NODES: usize = 12;
-
-/// The name under which the truth knows a regularizing technique.
-pub const fn mollified(technique: integrators::Technique) -> Option<Technique> {
-    match technique {
-        integrators::Technique::Camera => Some(Technique::Camera),
-        integrators::Technique::Merge => Some(Technique::Merge),
-        _ => None,
-    }
-}
 
 /// What one path contributes to a region at one bandwidth.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,6 @@
 //! What is exactly known of running means under a schedule: their expectations, variances and how normal they are.
 
-use nephroid_analytic::bandwidth::{Bounded, Kernel, Technique};
+use nephroid_analytic::bandwidth::{Bounded, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::InvalidParameter;
 
@@ -12,10 +12,6 @@ use crate::integrators::Schedule;
 /// A mean over all replicates is taken as normal if it consists of at least so many contributions: its skewness is then below 0.023,
 /// and a tail of 1e-7 wrong by less than a factor of two.
 const FEWEST_CONTRIBUTIONS: f64 = 2000.0;
-/// The kernel of a technique's prediction.
-pub(super) fn kernel_of(request: &Request, technique: Technique) -> Kernel {
-    request.kernel.unwrap_or(technique.default_kernel())
-}
 
 /// The bandwidths of the iterations.
 pub(super) fn bandwidths(schedule: &Schedule, iterations: u32) -> Vec<f64> {
@@ -67,7 +63,7 @@ impl Law {
         };
         let schedule = request.predicted_schedule.unwrap_or(request.schedule);
         let schedule = bandwidths(schedule, request.iterations);
-        let kernel = kernel_of(request, technique);
+        let kernel = request.asked.kernel_of(technique);
         let iterations = expected(view, class, technique, kernel, &schedule)?;
         let (mut means, mut variances, mut errors) = (Vec::new(), Vec::new(), Vec::new());
         let mut contributions = Vec::new();
@@ -87,8 +83,10 @@ impl Law {
                 });
                 variances.push(squares / (n * n));
                 let kurtosis = fourths / (squares * squares);
-                errors.push(f64::sqrt((2.0 + kurtosis) / f64::from(request.replicates)));
-                contributions.push(f64::from(request.replicates) / kurtosis);
+                errors.push(f64::sqrt(
+                    (2.0 + kurtosis) / f64::from(request.asked.replicates),
+                ));
+                contributions.push(f64::from(request.asked.replicates) / kurtosis);
             }
         }
         let is_known = technique != Technique::Merge || view.is_close_up;

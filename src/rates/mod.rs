@@ -8,20 +8,23 @@
 pub mod allocation;
 pub mod bias;
 mod bias_report;
+pub mod classes;
 pub mod converge;
 mod converge_report;
 pub mod counts;
 mod events;
 pub mod expected;
 mod law;
-pub mod options;
+mod options;
 pub mod outcome;
 mod plot;
 pub mod power_law;
 pub mod region;
+mod report;
 pub mod runs;
 pub mod variance;
 
 pub use bias_report::{bias_json, bias_table};
 pub use converge_report::{converge_json, converge_table};
 pub use plot::{bias_svg, converge_svg};
+pub use report::Heading;

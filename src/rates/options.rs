@@ -1,20 +1,10 @@
-//! What both studies ask of their options.
+//! What both studies ask of technique, kernel and bandwidths.
 
 use nephroid_analytic::bandwidth::{Kernel, Technique};
-use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::InvalidParameter;
 
-use super::expected::mollified;
 use crate::integrators::{Plan, Treatment};
-
-/// A class that is not measured, and why.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Skipped {
-    /// The class.
-    pub class: PathClass,
-    /// Why.
-    pub reason: String,
-}
+use crate::verify::expected::mollified;
 
 /// The technique of the prediction: the one asked for, if its bandwidth is of the same kind as that of the integrator's.
 pub(super) fn chosen(

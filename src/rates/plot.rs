@@ -3,8 +3,9 @@
 use core::fmt::Write as _;
 
 use super::bias::Study as BiasStudy;
-use super::bias_report::range;
 use super::converge::Study as ConvergeStudy;
+use super::report::{Heading, range};
+use crate::svg::Sheet;
 
 /// Size of a panel, and of the plot in it [px].
 const PANEL: [f64; 2] = [430.0, 310.0];
@@ -32,7 +33,10 @@ struct Panel {
 }
 
 /// The bias against the bandwidth, a panel for each class.
-pub fn bias_svg(scene: &str, integrator: &str, studies: &[BiasStudy]) -> String {
+pub fn bias_svg(heading: &Heading, studies: &[BiasStudy]) -> String {
+    let Heading {
+        scene, integrator, ..
+    } = heading;
     let panels: Vec<Panel> = studies
         .iter()
         .map(|s| {
@@ -73,7 +77,10 @@ pub fn bias_svg(scene: &str, integrator: &str, studies: &[BiasStudy]) -> String 
 }
 
 /// Variance and bias against the number of iterations, two panels for each class (one if it has no bias).
-pub fn converge_svg(scene: &str, integrator: &str, studies: &[ConvergeStudy]) -> String {
+pub fn converge_svg(heading: &Heading, studies: &[ConvergeStudy]) -> String {
+    let Heading {
+        scene, integrator, ..
+    } = heading;
     let mut panels = Vec::new();
     for s in studies {
         let square = s.sharp.value * s.sharp.value;
@@ -153,32 +160,21 @@ pub fn converge_svg(scene: &str, integrator: &str, studies: &[ConvergeStudy]) ->
 }
 
 fn document(panels: &[Panel]) -> String {
-    let columns = panels.len().clamp(1, 2);
-    let rows = panels.len().div_ceil(columns).max(1);
-    let (width, height) = (PANEL[0] * columns as f64, PANEL[1] * rows as f64 + 30.0);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"11\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
+    let mut sheet = Sheet::new(PANEL, panels.len().clamp(1, 2), panels.len());
     for (k, panel) in panels.iter().enumerate() {
-        let origin = [
-            PANEL[0] * (k % columns) as f64,
-            PANEL[1] * (k / columns) as f64,
-        ];
-        draw(&mut out, origin, panel);
+        let origin = sheet.origin(k);
+        draw(&mut sheet.out, origin, panel);
     }
-    let y = height - 10.0;
+    let y = sheet.legend();
     let _ = writeln!(
-        out,
+        sheet.out,
         "<path d=\"M16 {0} h26\" stroke=\"{PREDICTED}\" stroke-width=\"1.6\"/><text x=\"48\" y=\"{y}\">predicted: exact</text>\
          <path d=\"M176 {1} v12\" stroke=\"{MEASURED}\"/><circle cx=\"176\" cy=\"{0}\" r=\"3\" fill=\"{MEASURED}\"/>\
          <text x=\"188\" y=\"{y}\">measured, 95 % interval</text>",
         y - 4.0,
         y - 10.0
     );
-    out += "</svg>\n";
-    out
+    sheet.finish()
 }
 
 /// The logarithmic range of values, widened a little; `None` where there is none.

@@ -6,7 +6,7 @@ use core::time::Duration;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::text;
-use crate::judge::verdict::State;
+use crate::judge::finding::State;
 use crate::verify::verdicts::{Outcome, Verdict, WHOLE_IMAGE};
 
 /// The whole answer.

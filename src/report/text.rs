@@ -2,8 +2,8 @@
 
 use core::fmt::Write as _;
 
+use crate::judge::finding::{Finding, State};
 use crate::judge::power::DETECTION_POWER;
-use crate::judge::verdict::{Finding, State};
 use crate::verify::verdicts::{NotRun, Outcome, Verdict};
 
 /// The whole answer, without a final newline.

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Outcome, Precision, Row};
+use crate::svg::Sheet;
 
 /// Panels in a row.
 const COLUMNS: usize = 4;
@@ -29,27 +30,18 @@ pub fn svg(rows: &[Row]) -> String {
             _ => panels.push(vec![row]),
         }
     }
-    let lines = panels.len().div_ceil(COLUMNS).max(1);
-    let (width, height) = (PANEL[0] * COLUMNS as f64, PANEL[1] * lines as f64 + 30.0);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"11\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
+    let mut sheet = Sheet::new(PANEL, COLUMNS, panels.len());
     for (k, panel) in panels.iter().enumerate() {
-        let origin = [
-            PANEL[0] * (k % COLUMNS) as f64,
-            PANEL[1] * (k / COLUMNS) as f64,
-        ];
-        draw(&mut out, origin, panel);
+        let origin = sheet.origin(k);
+        draw(&mut sheet.out, origin, panel);
     }
     let mut x = 16.0;
-    let y = height - 10.0;
+    let y = sheet.legend();
     for precision in Precision::ALL {
         let (stroke, name) = (color(precision), precision.name());
         for (dash, what) in [("", "relative error"), ("4 3", "conditioning × unit")] {
             let _ = writeln!(
-                out,
+                sheet.out,
                 "<path d=\"M{x} {} h26\" stroke=\"{stroke}\" stroke-width=\"1.6\" stroke-dasharray=\"{dash}\"/>\
                  <text x=\"{}\" y=\"{y}\">{name}: {what}</text>",
                 y - 4.0,
@@ -58,8 +50,7 @@ pub fn svg(rows: &[Row]) -> String {
             x += 190.0;
         }
     }
-    out += "</svg>\n";
-    out
+    sheet.finish()
 }
 
 fn draw(out: &mut String, [left, top]: [f64; 2], panel: &[&Row]) {

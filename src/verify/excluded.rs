@@ -62,39 +62,53 @@ pub fn crossed_by_folds(entry: &Entry) -> Vec<bool> {
         .collect()
 }
 
-/// The regions that are left, and what is not among them; `None` if all of the image is crossed.
-pub fn regions(entry: &Entry) -> Option<(Regions, u64)> {
-    let crossed = crossed_by_folds(entry);
-    let kept: Vec<bool> = crossed.iter().map(|c| !c).collect();
-    let pixels = crossed.iter().filter(|c| **c).count() as u64;
-    let regions = Regions::mask(entry.camera.width, entry.camera.height, &kept)?;
-    Some((regions, pixels))
+/// The part of an image in which a verdict is found, and the pixels that are left out of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// What is left.
+    pub regions: Regions,
+    /// All that was asked for: an image, or a mask of it.
+    pub all: Regions,
+    /// Number of pixels that are left out.
+    pub pixels: u64,
 }
 
-/// Narrows what is expected to the first area of the regions, and tells how much is left out. Classes known over the whole
-/// image only can no longer be judged.
-pub fn narrow(
-    expected: Vec<Option<Expected>>,
-    regions: &Regions,
-    pixels: u64,
-) -> (Vec<Option<Expected>>, Excluded) {
-    let kept = regions.pixels()[0];
-    let all = kept + pixels;
-    let (mut inside, mut total) = (0.0, 0.0);
-    let narrowed = expected
-        .into_iter()
-        .map(|e| {
-            let e = e?;
-            let area = *e.areas.first()?;
-            inside += area.value * kept as f64;
-            total += e.image.value * all as f64;
-            Some(Expected::of_image(area))
+impl Kept {
+    /// What folds leave of an image, or of its pixels that are `selected`; `None` if they leave nothing.
+    pub fn of(entry: &Entry, selected: Option<&[bool]>) -> Option<Self> {
+        let (width, height) = (entry.camera.width, entry.camera.height);
+        let crossed = crossed_by_folds(entry);
+        let is_asked = |k: usize| selected.is_none_or(|s| s[k]);
+        let asked: Vec<bool> = (0..crossed.len()).map(is_asked).collect();
+        let kept: Vec<bool> = asked.iter().zip(&crossed).map(|(a, c)| a & !c).collect();
+        let count = |which: &[bool]| which.iter().filter(|w| **w).count() as u64;
+        let pixels = count(&asked) - count(&kept);
+        let all = match selected {
+            Some(_) => Regions::mask(width, height, &asked)?,
+            None => Regions::image(width, height),
+        };
+        Some(Kept {
+            regions: Regions::mask(width, height, &kept)?,
+            all,
+            pixels,
         })
-        .collect();
-    let energy = if total > 0.0 {
-        1.0 - inside / total
-    } else {
-        0.0
-    };
-    (narrowed, Excluded { pixels, energy })
+    }
+
+    /// How much is left out, of classes that should be so bright in what is left and in all of it.
+    pub fn excluded(&self, kept: &[Option<Expected>], all: &[Option<Expected>]) -> Excluded {
+        let energy = |classes: &[Option<Expected>], regions: &Regions| -> f64 {
+            let means = classes.iter().flatten().map(|e| e.first().value);
+            means.sum::<f64>() * regions.pixels()[0] as f64
+        };
+        let (inside, total) = (energy(kept, &self.regions), energy(all, &self.all));
+        let energy = if total > 0.0 {
+            1.0 - inside / total
+        } else {
+            0.0
+        };
+        Excluded {
+            pixels: self.pixels,
+            energy,
+        }
+    }
 }

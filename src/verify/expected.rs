@@ -3,14 +3,14 @@
 
 use std::collections::HashMap;
 
-use nephroid_analytic::bandwidth::{Kernel, Moments, Technique as Mollified};
+use nephroid_analytic::bandwidth::{Kernel, Technique as Mollified};
 use nephroid_analytic::camera::Bounded;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
 use crate::error::Error;
 use crate::integrators::{Plan, Technique, Treatment};
-use crate::regions::Regions;
+use crate::regions::{Area, Regions};
 use crate::truth::TruthImage;
 use crate::{expectation, truth};
 
@@ -25,26 +25,40 @@ struct Finite {
     technique: Mollified,
     kernel: Kernel,
     bandwidths: Vec<f64>,
+    regions: Regions,
 }
 
-type ClassMoments = Vec<(PathClass, Moments)>;
+/// Per class the means over each area.
+type AreaMeans = Vec<(PathClass, Vec<Bounded>)>;
 
-/// What one class should be, in each area of the image.
+/// What one class should be, in each area of the image [W m⁻² sr⁻¹]: first in the one that decides, which is the whole image
+/// or a mask.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expected {
-    /// Over the whole image [W m⁻² sr⁻¹].
-    pub image: Bounded,
-    /// Over each area of the regions, the image among them; empty where only the image is known.
-    pub areas: Vec<Bounded>,
+    areas: Vec<Bounded>,
 }
 
 impl Expected {
-    /// Known over the image only.
-    pub fn of_image(image: Bounded) -> Self {
+    /// In the deciding area, and in others.
+    pub fn new(first: Bounded, others: impl IntoIterator<Item = Bounded>) -> Self {
         Expected {
-            image,
-            areas: Vec::new(),
+            areas: core::iter::once(first).chain(others).collect(),
         }
+    }
+
+    /// In the deciding area only.
+    pub fn of_first(first: Bounded) -> Self {
+        Expected::new(first, [])
+    }
+
+    /// In the deciding area.
+    pub fn first(&self) -> Bounded {
+        self.areas[0]
+    }
+
+    /// In each area, the deciding one first.
+    pub fn areas(&self) -> &[Bounded] {
+        &self.areas
     }
 }
 
@@ -52,7 +66,7 @@ impl Expected {
 pub struct Truths {
     tolerance: f64,
     exact: HashMap<usize, TruthImage>,
-    finite: Vec<(Finite, ClassMoments)>,
+    finite: Vec<(Finite, AreaMeans)>,
 }
 
 impl Truths {
@@ -90,9 +104,15 @@ impl Truths {
                         .entry(scene)
                         .or_insert_with(|| truth::image(entry, tolerance));
                     let position = entry.kind.classes().iter().position(|&c| c == class.class);
-                    position.map(|layer| Expected {
-                        image: image.class_means()[layer],
-                        areas: image.area_means(layer, regions),
+                    position.map(|layer| {
+                        let areas = image.area_means(layer, regions).into_iter();
+                        match regions.areas()[0] {
+                            // The image's own sum is compensated.
+                            Area::Image => Expected::new(image.class_means()[layer], areas.skip(1)),
+                            _ => Expected {
+                                areas: areas.collect(),
+                            },
+                        }
                     })
                 }
                 Treatment::Regularized(technique) => match mollified(technique) {
@@ -100,12 +120,15 @@ impl Truths {
                         let key = Finite {
                             scene,
                             technique,
-                            kernel: kernel.unwrap_or(default_kernel(technique)),
+                            kernel: kernel.unwrap_or(technique.default_kernel()),
                             bandwidths: bandwidths.to_vec(),
+                            regions: regions.clone(),
                         };
                         let means = self.finite(entry, key)?;
                         let mean = means.iter().find(|(c, _)| *c == class.class);
-                        mean.map(|(_, m)| Expected::of_image(m.mean))
+                        mean.map(|(_, areas)| Expected {
+                            areas: areas.clone(),
+                        })
                     }
                     None => None,
                 },
@@ -120,16 +143,18 @@ impl Truths {
     }
 
     /// Expectations of the regularized classes.
-    fn finite(&mut self, entry: &Entry, key: Finite) -> Result<&ClassMoments, Error> {
+    fn finite(&mut self, entry: &Entry, key: Finite) -> Result<&AreaMeans, Error> {
         let position = match self.finite.iter().position(|(k, _)| *k == key) {
             Some(position) => position,
             None => {
-                let means = expectation::class_means(
+                // No test asks for second moments.
+                let moments = expectation::area_moments(
                     entry,
                     key.technique,
                     key.kernel,
                     &key.bandwidths,
-                    self.tolerance,
+                    [self.tolerance, f64::INFINITY],
+                    &key.regions,
                 )
                 .map_err(|e| Error::Parameter {
                     file: "command line".to_owned(),
@@ -137,6 +162,10 @@ impl Truths {
                     found: e.found,
                     allowed: e.allowed,
                 })?;
+                let means = moments
+                    .into_iter()
+                    .map(|(class, areas)| (class, areas.iter().map(|m| m.mean).collect()))
+                    .collect();
                 self.finite.push((key, means));
                 self.finite.len() - 1
             }
@@ -146,18 +175,10 @@ impl Truths {
 }
 
 /// The name under which the truth knows a regularizing technique.
-pub fn mollified(technique: Technique) -> Option<Mollified> {
+pub const fn mollified(technique: Technique) -> Option<Mollified> {
     match technique {
         Technique::Camera => Some(Mollified::Camera),
         Technique::Merge => Some(Mollified::Merge),
         Technique::NextEvent | Technique::LightTracing => None,
-    }
-}
-
-/// The cone for an angle, the disc for a radius.
-pub const fn default_kernel(technique: Mollified) -> Kernel {
-    match technique {
-        Mollified::Merge => Kernel::Disc,
-        _ => Kernel::Cone,
     }
 }

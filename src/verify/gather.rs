@@ -8,10 +8,11 @@ use super::sizing::{self, Check, Demand, PATHS_BEFORE_MISSING, Size};
 use crate::integrators::Prepared;
 use crate::judge::betting::Bet;
 use crate::judge::evidence::{Invalid, Replicate, Sample, Tally};
+use crate::judge::finding::{Finding, State};
 use crate::judge::heavy::{self, TailIndex};
 use crate::judge::hypotheses::dependence_p;
 use crate::judge::spending::{Look, looks};
-use crate::judge::verdict::{Case, Finding, Part, Spent, State, decide_at};
+use crate::judge::verdict::{Case, Part, Spent, decide_at};
 use crate::regions::Regions;
 
 use super::replicates::Shape;
@@ -119,7 +120,7 @@ pub fn gather_until(
     let prepared = prepare();
     let prepared = prepared.as_ref();
     let checks: Vec<Check> = subjects.iter().map(Subject::check).collect();
-    let size = sizing::plan(prepared, canvas, shape, seeds, &checks, demand);
+    let size = sizing::plan(prepared, canvas, regions, shape, seeds, &checks, demand);
     let (mut drawn, mut taken) = (0, 0);
     for look in looks(u64::from(size.replicates), u64::from(size.most)) {
         while u64::from(drawn) < look.replicates {
@@ -196,24 +197,18 @@ fn sum(parts: &[Expected]) -> Expected {
         value: a.value + b.value,
         error: a.error + b.error,
     };
-    let image = parts
-        .iter()
-        .fold(Bounded::default(), |s, e| add(s, e.image));
-    let areas = parts.iter().map(|e| e.areas.len()).min().unwrap_or(0);
     let area = |k: usize| {
         parts
             .iter()
-            .fold(Bounded::default(), |s, e| add(s, e.areas[k]))
+            .fold(Bounded::default(), |s, e| add(s, e.areas()[k]))
     };
-    Expected {
-        image,
-        areas: (0..areas).map(area).collect(),
-    }
+    let areas = parts.iter().map(|e| e.areas().len()).min().unwrap_or(0);
+    Expected::new(area(0), (1..areas).map(area))
 }
 
 impl Subject {
     fn new(class: Option<usize>, layers: Vec<usize>, expected: Expected) -> Self {
-        let tallies = vec![Tally::default(); expected.areas.len().max(1)];
+        let tallies = vec![Tally::default(); expected.areas().len()];
         Subject {
             class,
             layers,
@@ -228,7 +223,7 @@ impl Subject {
     fn check(&self) -> Check {
         Check {
             layers: self.layers.clone(),
-            truth: self.expected.image,
+            truth: self.expected.first(),
         }
     }
 
@@ -236,7 +231,7 @@ impl Subject {
         for (area, tally) in self.tallies.iter_mut().enumerate() {
             tally.push(r, &self.layers, area);
         }
-        let most = self.expected.image.value + self.expected.image.error;
+        let most = self.expected.first().value + self.expected.first().error;
         if most > 0.0 {
             let x: f64 = self.layers.iter().map(|&l| r.mean(l, 0)).sum();
             self.bet.push(x / most);
@@ -274,11 +269,11 @@ impl Subject {
             place: regions.areas()[k].to_string(),
             weight: weights[k],
             sample,
-            truth: self.expected.areas[k],
+            truth: self.expected.areas()[k],
         });
         let case = Case {
             sample: samples[0],
-            truth: self.expected.image,
+            truth: self.expected.first(),
             weight: weight * (1.0 - BETTING - INDEPENDENCE),
             most: u64::from(size.most),
             dependence: Some((
@@ -313,7 +308,7 @@ fn in_order(subjects: Vec<Subject>, layers: &[Layer]) -> Vec<Judged> {
         let tail = s.class.and_then(|c| heavy::hill(&layers[c].largest));
         Judged {
             class: s.class,
-            truth: Some(s.expected.image),
+            truth: Some(s.expected.first()),
             mean: Some(sample.mean),
             finding: s
                 .finding

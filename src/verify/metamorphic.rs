@@ -9,14 +9,14 @@
 use std::time::Instant;
 
 use nephroid_analytic::camera::Bounded;
-use nephroid_analytic::scene::Entry;
+use nephroid_analytic::scene::{Camera, Entry};
 
 use super::expected::{Expected, Truths};
 use super::run::{Job, Request, first_shape};
 use super::suite::Pair;
 use super::verdicts::{NotRun, Verdict};
 use crate::error::Error;
-use crate::integrators::{ClassPlan, Integrator, NO_BANDWIDTH, Treatment};
+use crate::integrators::{Integrator, NO_BANDWIDTH, Treatment};
 use crate::judge::hypotheses::Levels;
 use crate::regions::Regions;
 use crate::variation::Variation;
@@ -50,31 +50,52 @@ pub(super) struct Varied {
     argument: String,
 }
 
-/// The pair on which each integrator is varied: the first that claims the most classes.
-fn chosen<'a>(pairs: &'a [Pair], integrators: usize) -> impl Iterator<Item = usize> + 'a {
+/// A view is cropped where each class keeps this part of its light: the paths that decide about a class grow as that part
+/// falls.
+const KEPT_BY_CROP: f64 = 0.25;
+
+/// For each integrator the pairs on which it may be varied: those that claim the most classes first, then in their order.
+fn candidates(pairs: &[Pair], integrators: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..integrators).filter_map(move |i| {
         let of = |p: &usize| pairs[*p].integrator == i && pairs[*p].checks() > 0;
-        (0..pairs.len())
-            .filter(of)
-            .min_by_key(|&p| (core::cmp::Reverse(pairs[p].checks()), p))
+        let mut all: Vec<usize> = (0..pairs.len()).filter(of).collect();
+        all.sort_by_key(|&p| core::cmp::Reverse(pairs[p].checks()));
+        (!all.is_empty()).then_some(all)
     })
 }
 
-/// What is to be run. A scene that cannot express a change, or that validation refuses once changed, is not.
-pub(super) fn jobs(request: &Request, pairs: &[Pair]) -> Vec<Varied> {
+/// What is to be run, and what cannot be. A change that a scene cannot express, or that validation refuses, is left out.
+///
+/// # Errors
+/// A kernel or a bandwidth that does not fit.
+pub(super) fn jobs(
+    request: &Request,
+    pairs: &[Pair],
+    truths: &mut Truths,
+) -> Result<(Vec<Varied>, Vec<NotRun>), Error> {
+    let (mut jobs, mut not_run) = (Vec::new(), Vec::new());
     if !request.variations {
-        return Vec::new();
+        return Ok((jobs, not_run));
     }
-    let mut jobs = Vec::new();
-    for pair in chosen(pairs, request.integrators.len()) {
-        let subject = &request.scenes[pairs[pair].scene];
-        // At finite bandwidth the truth is known over the whole image, not over the part that a crop leaves.
-        let regularizes = |c: &ClassPlan| matches!(c.treatment, Treatment::Regularized(_));
-        let whole_only = pairs[pair].plan.iter().any(regularizes);
+    for candidates in candidates(pairs, request.integrators.len()) {
         for change in CHANGES {
-            if whole_only && change == Change::Scene(Variation::Cropped) {
+            let chosen = match change {
+                Change::Scene(Variation::Cropped) => {
+                    first_to_crop(request, pairs, &candidates, truths)?
+                }
+                _ => Some(candidates[0]),
+            };
+            let Some(pair) = chosen else {
+                let [scene, integrator] = names(request, &pairs[candidates[0]]);
+                not_run.push(NotRun {
+                    scene,
+                    integrator,
+                    reason: "cropped to the middle: a class would lose most of its light"
+                        .to_owned(),
+                });
                 continue;
-            }
+            };
+            let subject = &request.scenes[pairs[pair].scene];
             let changed = match change {
                 Change::Scene(v) => v.of(&subject.argument).ok().flatten(),
                 Change::Paths(_) => Some((subject.entry.clone(), 1.0)),
@@ -88,16 +109,85 @@ pub(super) fn jobs(request: &Request, pairs: &[Pair]) -> Vec<Varied> {
             }));
         }
     }
-    jobs
+    Ok((jobs, not_run))
+}
+
+/// The first pair of which each class keeps enough of its light in the middle of the view.
+fn first_to_crop(
+    request: &Request,
+    pairs: &[Pair],
+    candidates: &[usize],
+    truths: &mut Truths,
+) -> Result<Option<usize>, Error> {
+    for &p in candidates {
+        let pair = &pairs[p];
+        let camera = &request.scenes[pair.scene].entry.camera;
+        let [whole, part] = [None, Some(middle(camera))];
+        let whole = unchanged(request, pair, whole, truths)?;
+        let part = unchanged(request, pair, part, truths)?;
+        // The part has a quarter of the pixels.
+        let keeps = |(w, p): (&Option<Expected>, &Option<Expected>)| match (w, p) {
+            (Some(w), Some(p)) => 0.25 * p.first().value >= KEPT_BY_CROP * w.first().value,
+            _ => true,
+        };
+        if whole.iter().zip(&part).all(keeps) {
+            return Ok(Some(p));
+        }
+    }
+    Ok(None)
+}
+
+/// The pixels that a cropped view shows.
+fn middle(camera: &Camera) -> Regions {
+    let (width, height) = (camera.width, camera.height);
+    let inside = |i: u32, n: u32| (n / 4..n - n / 4).contains(&i);
+    let selected: Vec<bool> = (0..width * height)
+        .map(|k| inside(k % width, width) && inside(k / width, height))
+        .collect();
+    Regions::mask(width, height, &selected).unwrap_or(Regions::image(width, height))
+}
+
+/// The truth of an unchanged scene: of the whole image, or of a part of it.
+fn unchanged(
+    request: &Request,
+    pair: &Pair,
+    part: Option<Regions>,
+    truths: &mut Truths,
+) -> Result<Vec<Option<Expected>>, Error> {
+    let entry = &request.scenes[pair.scene].entry;
+    let integrator = request.integrators[pair.integrator].as_ref();
+    let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
+    // The regions of the unchanged run, whose truth serves that as well.
+    let regions =
+        part.unwrap_or_else(|| Regions::quadtree(entry.camera.width, entry.camera.height));
+    let kernel = request.truth_kernel();
+    truths.of(
+        pair.scene,
+        entry,
+        &pair.plan,
+        &regions,
+        kernel,
+        &shape.bandwidths,
+    )
+}
+
+fn names(request: &Request, pair: &Pair) -> [String; 2] {
+    [
+        request.scenes[pair.scene].entry.name.clone(),
+        request.integrators[pair.integrator].name().to_owned(),
+    ]
 }
 
 /// What is said of them when they are not asked for.
 pub(super) fn left_out(request: &Request, pairs: &[Pair]) -> Vec<NotRun> {
-    chosen(pairs, request.integrators.len())
-        .map(|p| NotRun {
-            scene: request.scenes[pairs[p].scene].entry.name.clone(),
-            integrator: request.integrators[pairs[p].integrator].name().to_owned(),
-            reason: "changed scenes: with --variations, or at standard".to_owned(),
+    candidates(pairs, request.integrators.len())
+        .map(|candidates| {
+            let [scene, integrator] = names(request, &pairs[candidates[0]]);
+            NotRun {
+                scene,
+                integrator,
+                reason: "changed scenes: with --variations, or at standard".to_owned(),
+            }
         })
         .collect()
 }
@@ -127,7 +217,9 @@ impl Varied {
         let integrator = request.integrators[pair.integrator].as_ref();
         let original = &request.scenes[pair.scene].entry;
         let mut shape = first_shape(integrator, &pair.plan, request.bandwidth, original);
-        let (expected, part) = self.expected(request, pair, &shape.bandwidths, truths)?;
+        let part =
+            (self.change == Change::Scene(Variation::Cropped)).then(|| middle(&original.camera));
+        let expected = unchanged(request, pair, part, truths)?;
         match self.change {
             Change::Paths(k) => {
                 shape.paths_per_iteration = (k * shape.paths_per_iteration as f64) as u64;
@@ -143,12 +235,7 @@ impl Varied {
         };
         let expected = expected
             .into_iter()
-            .map(|e| {
-                let e = e?;
-                // A part of the image is known where pixels are.
-                let mean = if part { *e.areas.first()? } else { e.image };
-                Some(Expected::of_image(times(mean)))
-            })
+            .map(|e| e.map(|e| Expected::of_first(times(e.first()))))
             .collect();
         let job = Job {
             integrator: pair.integrator,
@@ -163,34 +250,6 @@ impl Varied {
         };
         Ok(job.run(request, levels, checks, started))
     }
-
-    /// The truth of the unchanged scene: of the whole image, or (true) of the part that is left of it.
-    fn expected(
-        &self,
-        request: &Request,
-        pair: &Pair,
-        bandwidths: &[f64],
-        truths: &mut Truths,
-    ) -> Result<(Vec<Option<Expected>>, bool), Error> {
-        let original = &request.scenes[pair.scene].entry;
-        let (width, height) = (original.camera.width, original.camera.height);
-        let cropped = self.change == Change::Scene(Variation::Cropped);
-        let whole = Regions::image(width, height);
-        let regions = if cropped {
-            let inside = |i: u32, n: u32| (n / 4..n - n / 4).contains(&i);
-            let selected: Vec<bool> = (0..width * height)
-                .map(|k| inside(k % width, width) && inside(k / width, height))
-                .collect();
-            Regions::mask(width, height, &selected).unwrap_or(whole)
-        } else {
-            whole
-        };
-        let kernel = request.truth_kernel();
-        let expected = truths.of(
-            pair.scene, original, &pair.plan, &regions, kernel, bandwidths,
-        )?;
-        Ok((expected, cropped))
-    }
 }
 
 /// Whether the bandwidth is a length.
@@ -201,4 +260,65 @@ fn is_radius(integrator: &dyn Integrator, pair: &Pair) -> bool {
         .iter()
         .any(|c| c.treatment == Treatment::Regularized(Merge));
     merges && integrator.schedule(1.0).bandwidth(0) > NO_BANDWIDTH
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrators::{Settings, by_name};
+    use crate::judge::hypotheses::LEVEL;
+    use crate::verify::effort::Effort;
+    use crate::verify::suite::{Coverage, Subject, select};
+
+    /// The scene and the integrator of each job that crops, and what is said of those that do not.
+    fn cropped(scenes: &[&str], integrator: &str) -> (Vec<String>, Vec<String>) {
+        let subject = |name: &&str| Subject {
+            argument: (*name).to_owned(),
+            entry: crate::entry::load(name).unwrap(),
+        };
+        let request = Request {
+            scenes: scenes.iter().map(subject).collect(),
+            integrators: vec![by_name(integrator, &Settings::default()).unwrap()],
+            left_out: Vec::new(),
+            effort: Effort::Quick,
+            coverage: Coverage::Everything,
+            margin: 0.5,
+            level: LEVEL,
+            checks: None,
+            seed: 1,
+            bandwidth: 0.2,
+            most_paths: 1,
+            variations: true,
+            kernel: None,
+            mask: None,
+        };
+        let (pairs, _) = select(&request.scenes, &request.integrators, request.coverage);
+        let mut truths = Truths::for_margin(request.margin);
+        let (jobs, not_run) = jobs(&request, &pairs, &mut truths).unwrap();
+        // All other changes take the first of the pairs that claim the most.
+        let others = jobs
+            .iter()
+            .filter(|j| j.name() != Variation::Cropped.name());
+        assert!(others.clone().count() >= 6 && others.clone().all(|j| j.argument == scenes[0]));
+        let crops = jobs
+            .iter()
+            .filter(|j| j.name() == Variation::Cropped.name());
+        (
+            crops.map(|j| j.argument.clone()).collect(),
+            not_run.into_iter().map(|n| n.reason).collect(),
+        )
+    }
+
+    /// In the middle of the view of `glass-column` there is a 10⁻⁵th of the light of LTTDE that is in all of it, and
+    /// none of LTRTDE; that of `mirror-wall` keeps most of each class, regularized or not.
+    #[test]
+    fn a_view_is_cropped_where_its_classes_keep_their_light() {
+        let (crops, not_run) = cropped(&["glass-column"], "lt");
+        assert!(crops.is_empty() && not_run.len() == 1, "{not_run:?}");
+        assert!(not_run[0].starts_with("cropped"), "{not_run:?}");
+        let (crops, not_run) = cropped(&["glass-column", "mirror-wall"], "lt");
+        assert_eq!((crops, not_run.len()), (vec!["mirror-wall".to_owned()], 0));
+        let (crops, not_run) = cropped(&["mirror-wall"], "pm");
+        assert_eq!((crops, not_run.len()), (vec!["mirror-wall".to_owned()], 0));
+    }
 }

@@ -6,18 +6,19 @@ use nephroid_analytic::bandwidth::Kernel as TruthKernel;
 use nephroid_analytic::scene::Entry;
 
 use super::effort::Effort;
-use super::excluded::{self, Excluded};
+use super::excluded::{Excluded, Kept};
 use super::expected::{Expected, Truths};
 use super::gather::{Judged, gather};
 use super::metamorphic;
 use super::replicates::{Canvas, Seeds, Shape};
 use super::sizing::Demand;
 use super::suite::{Coverage, LeftOut, Pair, Subject, select};
-use super::verdicts::{ALL_CLASSES, NotRun, Outcome, Verdict, WHOLE_IMAGE};
+use super::verdicts::{ALL_CLASSES, MASK, NotRun, Outcome, Verdict, WHOLE_IMAGE};
 use crate::error::Error;
 use crate::integrators::{Integrator, Kernel, Plan, Technique, Treatment};
 use crate::judge::family::holm;
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
+use crate::mask::Mask;
 use crate::regions::Regions;
 
 /// Iterations of a replicate of a method that merges: each has its own photon map, and a progressive one its own radius.
@@ -56,6 +57,8 @@ pub struct Request {
     pub variations: bool,
     /// The mollifier; `None` for each method's default.
     pub kernel: Option<Kernel>,
+    /// Judge these pixels only.
+    pub mask: Option<Mask>,
 }
 
 /// Runs the suite. `truths` belongs to the request's list of scenes and can serve several requests. `progress` hears of each pair before it starts: its position, their number, scene and integrator.
@@ -76,7 +79,8 @@ pub fn run(
             reason: l.reason.clone(),
         }));
     }
-    let varied = metamorphic::jobs(request, &pairs);
+    let (varied, unvaried) = metamorphic::jobs(request, &pairs, truths)?;
+    not_run.extend(unvaried);
     let planned: u64 = pairs.iter().map(Pair::checks).sum::<u64>()
         + varied.iter().map(|v| pairs[v.pair].checks()).sum::<u64>();
     let checks = planned.max(request.checks.unwrap_or(0));
@@ -87,7 +91,15 @@ pub fn run(
         let scene = &request.scenes[pair.scene].entry.name;
         let integrator = request.integrators[pair.integrator].name();
         progress(position, of, scene, integrator);
-        verdicts.extend(run_pair(request, pair, levels, checks, truths)?);
+        match run_pair(request, pair, levels, checks, truths)? {
+            Some(found) => verdicts.extend(found),
+            None => not_run.push(NotRun {
+                scene: scene.clone(),
+                integrator: integrator.to_owned(),
+                reason: "a fold crosses every pixel, and this method's variance is infinite there"
+                    .to_owned(),
+            }),
+        }
     }
     for (position, varied) in (pairs.len()..).zip(&varied) {
         let pair = &pairs[varied.pair];
@@ -95,7 +107,7 @@ pub fn run(
         progress(position, of, &varied.name(), integrator);
         verdicts.extend(varied.run(request, pair, levels, checks, truths)?);
     }
-    if !request.variations {
+    if !request.variations && request.mask.is_none() {
         not_run.extend(metamorphic::left_out(request, &pairs));
     }
     settle(&mut verdicts, request.level, checks);
@@ -156,43 +168,40 @@ pub(super) struct Job<'a> {
     pub variation: Option<String>,
 }
 
+/// The verdicts on one pair; `None` if folds leave nothing of the image.
 fn run_pair(
     request: &Request,
     pair: &Pair,
     levels: Levels,
     checks: u64,
     truths: &mut Truths,
-) -> Result<Vec<Verdict>, Error> {
+) -> Result<Option<Vec<Verdict>>, Error> {
     let started = Instant::now();
     let subject = &request.scenes[pair.scene];
     let integrator = request.integrators[pair.integrator].as_ref();
     let entry = &subject.entry;
     let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
-    let (regions, left_out) = if integrator.has_infinite_variance_at_folds() {
-        match excluded::regions(entry) {
-            Some((regions, pixels)) => (regions, Some(pixels)),
-            None => return Ok(Vec::new()),
-        }
-    } else {
-        (
-            Regions::quadtree(entry.camera.width, entry.camera.height),
-            None,
-        )
+    let mut expected = |regions: &Regions| {
+        let kernel = request.truth_kernel();
+        let bandwidths = &shape.bandwidths;
+        truths.of(pair.scene, entry, &pair.plan, regions, kernel, bandwidths)
     };
-    let expected = truths.of(
-        pair.scene,
-        entry,
-        &pair.plan,
-        &regions,
-        request.truth_kernel(),
-        &shape.bandwidths,
-    )?;
-    let (expected, excluded) = match left_out {
-        Some(pixels) => {
-            let (expected, excluded) = excluded::narrow(expected, &regions, pixels);
-            (expected, Some(excluded))
-        }
-        None => (expected, None),
+    let selected = request.mask.as_ref().map(Mask::selected);
+    let (regions, expected, excluded) = if integrator.has_infinite_variance_at_folds() {
+        let Some(kept) = Kept::of(entry, selected) else {
+            return Ok(None);
+        };
+        let (left, all) = (expected(&kept.regions)?, expected(&kept.all)?);
+        let excluded = kept.excluded(&left, &all);
+        (kept.regions, left, Some(excluded))
+    } else {
+        let (width, height) = (entry.camera.width, entry.camera.height);
+        let regions = match selected.and_then(|s| Regions::mask(width, height, s)) {
+            Some(mask) => mask,
+            None => Regions::quadtree(width, height),
+        };
+        let expected = expected(&regions)?;
+        (regions, expected, None)
     };
     let job = Job {
         integrator: pair.integrator,
@@ -205,7 +214,7 @@ fn run_pair(
         excluded,
         variation: None,
     };
-    Ok(job.run(request, levels, checks, started))
+    Ok(Some(job.run(request, levels, checks, started)))
 }
 
 impl Request {
@@ -256,6 +265,10 @@ impl Job<'_> {
         if self.variation.is_some() {
             command.push_str(" --variations");
         }
+        let first = match request.mask {
+            Some(_) => MASK,
+            None => WHOLE_IMAGE,
+        };
         let per_replicate = evidence.size.shape.paths();
         let replicates = evidence.replicates;
         let verdict = |judged: Judged| {
@@ -271,7 +284,7 @@ impl Job<'_> {
                 variation: self.variation.clone(),
                 integrator: integrator.name().to_owned(),
                 class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
-                region: place.unwrap_or_else(|| WHOLE_IMAGE.to_owned()),
+                region: place.unwrap_or_else(|| first.to_owned()),
                 paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
                 finding: judged.finding,
                 truth: judged.truth,
@@ -355,6 +368,9 @@ fn command(request: &Request, scene: &str, integrator: &str, checks: u64) -> Str
     );
     if let Some(kernel) = request.kernel {
         text.push_str(&format!(" --kernel {kernel}"));
+    }
+    if let Some(mask) = &request.mask {
+        text.push_str(&format!(" --mask {}", quoted(mask.file())));
     }
     text.push_str(&format!(" --checks {checks}"));
     text

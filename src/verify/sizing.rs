@@ -68,6 +68,7 @@ pub struct Size {
 pub fn plan(
     prepared: &dyn Prepared,
     canvas: Canvas,
+    regions: &Regions,
     first: Shape,
     seeds: Seeds,
     checks: &[Check],
@@ -76,7 +77,7 @@ pub fn plan(
     let mut shape = first;
     let mut pilot = Vec::new();
     let mut factor = 1;
-    let regions = Regions::image(canvas.width, canvas.height);
+    let regions = regions.first();
     for phase in 1.. {
         let replicates = 0..PILOT_REPLICATES;
         pilot = run(prepared, canvas, &regions, &shape, seeds, phase, replicates);
@@ -130,7 +131,9 @@ fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) 
         if s.fewest_contributions >= CONTRIBUTIONS_SAFE {
             return 1;
         }
-        let mean = (s.contributions / replicates).max(1);
+        let mean = (s.contributions / replicates)
+            .max(s.fewest_contributions)
+            .max(1);
         CONTRIBUTIONS_WANTED
             .div_ceil(mean)
             .max(2)

@@ -1,9 +1,10 @@
 //! Which pairs of scene and integrator a suite runs.
 
-use nephroid_analytic::scene::{Entry, Kind};
+use nephroid_analytic::scene::Entry;
 
 use super::expected::mollified;
 use super::verdicts::NotRun;
+use crate::expectation;
 use crate::integrators::{ClassPlan, Integrator, Plan, Treatment};
 
 /// A scene as the user named it.
@@ -111,7 +112,7 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
     }
     let unknown = |t: Treatment| match t {
         Treatment::Regularized(technique) => {
-            mollified(technique).is_none() || !matches!(entry.kind, Kind::PlanarMirror(_))
+            mollified(technique).is_none() || !expectation::is_known(&entry.kind)
         }
         _ => false,
     };

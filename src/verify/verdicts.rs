@@ -4,14 +4,16 @@ use nephroid_analytic::camera::Bounded;
 
 use super::effort::Effort;
 use super::excluded::Excluded;
+use crate::judge::finding::{Finding, exit_code};
 use crate::judge::heavy::TailIndex;
 use crate::judge::hypotheses::Levels;
-use crate::judge::verdict::{Finding, exit_code};
 
 /// The word for the sum of all classes that an integrator claims.
 pub const ALL_CLASSES: &str = "all";
 /// The word for the region that is the whole image.
 pub const WHOLE_IMAGE: &str = "image";
+/// The word for the region that is a user's mask.
+pub const MASK: &str = "mask";
 
 /// One check and what came of it.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use nephroid::integrators::{Fault, Integrator, Settings, by_name};
 use nephroid::rates::bias::{self, Study};
+use nephroid::rates::classes::Asked;
 use nephroid::rates::outcome::State;
 use nephroid_analytic::bandwidth::Technique;
 use nephroid_analytic::class::PathClass;
@@ -20,17 +21,19 @@ fn study_of(
     paths: u64,
 ) -> Study {
     let request = bias::Request {
-        entry,
-        integrator,
-        kernel: None,
-        technique,
+        asked: Asked {
+            entry,
+            integrator,
+            kernel: None,
+            technique,
+            class: Some(PathClass::LSDE),
+            region: None,
+            replicates: 32,
+            seed: 11,
+            level: LEVEL,
+        },
         bandwidths: &BANDWIDTHS,
-        class: Some(PathClass::LSDE),
-        region: None,
         paths: Some(paths),
-        replicates: 32,
-        seed: 11,
-        level: LEVEL,
         half_width: 1.0,
     };
     let (mut studies, skipped) = bias::study(&request).unwrap();

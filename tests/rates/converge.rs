@@ -2,6 +2,7 @@
 
 use libm::{log, pow};
 use nephroid::integrators::{Integrator, Schedule};
+use nephroid::rates::classes::Asked;
 use nephroid::rates::converge;
 use nephroid::rates::outcome::State;
 use nephroid::rates::power_law::Design;
@@ -19,19 +20,21 @@ fn converge_studies(
 ) -> converge::Study {
     let entry = mirror_wall();
     let request = converge::Request {
-        entry: &entry,
-        integrator,
-        kernel: None,
-        technique: None,
+        asked: Asked {
+            entry: &entry,
+            integrator,
+            kernel: None,
+            technique: None,
+            class: Some(class),
+            region: None,
+            replicates,
+            seed: 12,
+            level: LEVEL,
+        },
         schedule,
         predicted_schedule: predicted,
-        class: Some(class),
-        region: None,
         iterations,
         paths_per_iteration: Some(u64::from(paths)),
-        replicates,
-        seed: 12,
-        level: LEVEL,
         half_widths: [0.08, 3.0],
     };
     let (mut studies, skipped) = converge::study(&request).unwrap();

@@ -161,14 +161,15 @@ impl EntryExpectation {
         }
     }
 
-    /// The light of a spherical mirror on an unbounded receiver; `None` for parallel light.
+    /// The light of a spherical mirror on an unbounded receiver. The photons of parallel light are uniform over the sphere's
+    /// cross-section.
     ///
     /// # Errors
     /// What [`check`] finds.
     pub fn of_sphere(
         mirror: &SphereMirror<f64>,
         estimator: Estimator<'_>,
-    ) -> Result<Option<Self>, InvalidParameter> {
+    ) -> Result<Self, InvalidParameter> {
         Self::unbounded(scenes::sphere(mirror), mirror.receiver_z, estimator)
     }
 
@@ -180,14 +181,16 @@ impl EntryExpectation {
         form: &FlatInterface<f64>,
         estimator: Estimator<'_>,
     ) -> Result<Option<Self>, InvalidParameter> {
-        Self::unbounded(scenes::interface(form), form.receiver_z, estimator)
+        scenes::interface(form)
+            .map(|caustic| Self::unbounded(vec![caustic], form.receiver_z, estimator))
+            .transpose()
     }
 
     fn unbounded(
-        caustic: Option<Caustic>,
+        caustics: Vec<Caustic>,
         z: f64,
         estimator: Estimator<'_>,
-    ) -> Result<Option<Self>, InvalidParameter> {
+    ) -> Result<Self, InvalidParameter> {
         check(estimator.technique, estimator.kernel, estimator.bandwidths)?;
         let receiver = Receiver {
             center: [0.0; 2],
@@ -196,16 +199,14 @@ impl EntryExpectation {
             size: 1.0,
             escape: None,
         };
-        Ok(caustic.map(|caustic| {
-            let class = Class {
-                class: PathClass::LSDE,
-                photons: caustic.photons,
-                caustics: vec![caustic],
-                chains: None,
-                bundles: Vec::new(),
-            };
-            Self::of(vec![class], receiver, estimator)
-        }))
+        let class = Class {
+            class: PathClass::LSDE,
+            photons: caustics.first().map_or(0.0, |c| c.photons),
+            caustics,
+            chains: None,
+            bundles: Vec::new(),
+        };
+        Ok(Self::of(vec![class], receiver, estimator))
     }
 
     /// The classes `L S+ D` in the order in which everything here lists them, each as the class that is seen directly.
@@ -218,19 +219,26 @@ impl EntryExpectation {
     /// **Accuracy**: as stated in the error bounds, which are estimates: the size of the last two orders of every interpolant,
     /// and rounding of the parameters at the kernel's edge.
     pub fn at(&self, x: f64, y: f64, tolerance: f64) -> Vec<Moments> {
-        self.classes
-            .iter()
-            .map(|c| self.of_class(c, [x, y], tolerance.clamp(1e-13, 0.1)))
+        (0..self.classes.len())
+            .map(|k| self.of_class(k, [x, y], tolerance, [0.0; 2]))
             .collect()
     }
 
-    fn of_class(&self, class: &Class, x: [f64; 2], tolerance: f64) -> Moments {
+    /// The moments of one class, relative to a floor where they are smaller than that.
+    pub(super) fn of_class(
+        &self,
+        position: usize,
+        x: [f64; 2],
+        tolerance: f64,
+        floor: [f64; 2],
+    ) -> Moments {
+        let (class, tolerance) = (&self.classes[position], tolerance.clamp(1e-13, 0.1));
         let mut sum = Pair::default();
         let mut weighted = true;
         for bundle in &class.bundles {
             let merging = Merging::new(bundle, self.receiver, x, &self.profile, class.photons);
             weighted &= merging.is_weighted();
-            sum.add(&integrate(&merging, tolerance));
+            sum.add(&integrate(&merging, tolerance, floor));
         }
         if !weighted {
             (sum.value[1], sum.error[1]) = (f64::NAN, f64::INFINITY);
@@ -245,7 +253,7 @@ impl EntryExpectation {
                     &self.profile,
                     link,
                 );
-                integrate(&c, tolerance)
+                integrate(&c, tolerance, floor)
             }));
         }
         for (source, chain) in class
@@ -263,7 +271,7 @@ impl EntryExpectation {
                     &self.profile,
                     link,
                 )
-                .map_or_else(Pair::default, |c| integrate(&c, tolerance))
+                .map_or_else(Pair::default, |c| integrate(&c, tolerance, floor))
             }));
         }
         let bounded = |k: usize| Bounded {

@@ -19,6 +19,8 @@ mod clip;
 mod cubature;
 pub mod entry;
 pub mod film;
+pub mod flatland;
+pub mod frame;
 mod hits;
 mod kernel;
 mod linked;

@@ -23,9 +23,13 @@ pub enum Part {
     Unknown,
 }
 
+/// A curve that is its interpolant to rounding.
+pub const EXACT: f64 = 3e-13;
+
 /// Finds the border of a margin with the samples `g` (`[b][a]`) and, where all are finite, their Chebyshev coefficients;
 /// `size` is the scale of the margin's rounding. Where a border may coincide with the chart's own end, `coincides`, it is moved
-/// outwards by as much, so that rounding does not cut it.
+/// outwards by as much, so that rounding does not cut it. `fit` is what the last coefficients of the curve may be, in half
+/// widths of the chart; [`EXACT`] if it is to be known to rounding.
 pub fn find(
     chart: &Chart,
     g: &Grid,
@@ -33,6 +37,7 @@ pub fn find(
     depth: u32,
     size: f64,
     coincides: bool,
+    fit: f64,
     value: &dyn Fn(&Chart, [f64; 2]) -> f64,
 ) -> Border {
     let axis = match c.map_or_else(|| by_signs(g, depth), monotone) {
@@ -114,7 +119,7 @@ pub fn find(
                 let s = |x: f64| 0.5 * (low + high) + 0.5 * (high - low) * x;
                 let curve = nodes().map(|x| crossing(|t| at(s(x), t), above));
                 let c = chebyshev(&curve);
-                if c[N - 1].abs() + c[N - 2].abs() < 3e-13 + 4.0 * rounding / slope {
+                if c[N - 1].abs() + c[N - 2].abs() < fit + 4.0 * rounding / slope {
                     let edge = Edge { axis, above };
                     parts.push((part.cut(edge, powers(&c)), Part::Cut(edge)));
                 } else {

@@ -367,7 +367,8 @@ impl Cutter<'_> {
         }
         let value = |chart: &Chart, p: [f64; 2]| self.sample(chart, p).conditions[m];
         let size = self.scales[m];
-        match border::find(&task.chart, g, c, task.depth, size, true, &value) {
+        let fit = border::EXACT;
+        match border::find(&task.chart, g, c, task.depth, size, true, fit, &value) {
             Border::Halve(axis) => self.halve(task, axis),
             Border::Parts(parts) => {
                 for (chart, part) in parts {

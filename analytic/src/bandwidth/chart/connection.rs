@@ -184,7 +184,7 @@ impl<'a> Connection<'a> {
     }
 
     /// Whether the path is built from the camera.
-    fn from_camera(&self) -> bool {
+    fn is_from_camera(&self) -> bool {
         matches!(self.technique, Technique::Camera | Technique::Symmetric)
     }
 }
@@ -304,7 +304,7 @@ impl Integrand for Connection<'_> {
                 margins,
             };
         }
-        let (difference, density) = if self.from_camera() {
+        let (difference, density) = if self.is_from_camera() {
             let (out, scale) = match interaction {
                 Interaction::Mirror(r) => (reflect(-to_x, normal), *r),
                 Interaction::Interface(index) => {
@@ -328,7 +328,7 @@ impl Integrand for Connection<'_> {
         };
         let mut level = difference.length_squared();
         // Across the normal the exact direction is n times the incident one, also beyond the critical angle.
-        let least = match (interaction, self.from_camera()) {
+        let least = match (interaction, self.is_from_camera()) {
             (Interaction::Interface(index), true) => {
                 let d = to_x * *index + to_light;
                 let across = d - normal * d.dot(normal);

@@ -21,8 +21,14 @@ const DEEPEST: u32 = 72;
 const DARK: u32 = 12;
 /// Cells looked at, at most.
 const MOST: usize = 40_000;
+/// Halvings after which pieces that carry less than this part of the tolerance are left out.
+const SMALL: u32 = 16;
+const NEGLIGIBLE: f64 = 1e-4;
 /// What an interpolant misses, in units of its last two orders.
 const REMAINDER: f64 = 6.0;
+
+/// The integrand at the nodes of a piece, `[b][a]`, with the area of parameters per area of the chart.
+type Samples = [[(Node, f64); N]; N];
 
 /// A piece to be looked at.
 #[derive(Clone, Debug)]
@@ -30,8 +36,8 @@ struct Task {
     chart: Chart,
     /// Margins known to hold.
     settled: u32,
-    /// The ring of the kernel, once it is known.
-    ring: Option<usize>,
+    /// First and last ring of the kernel that it may touch: ring k is between the edges k - 1 and k, the last is beyond them all.
+    rings: [usize; 2],
     depth: u32,
 }
 
@@ -65,28 +71,37 @@ impl Ord for Leaf {
 
 struct Cutter<'a, I> {
     integrand: &'a I,
+    /// How well curves are known, in half widths of a cell.
+    fit: f64,
     /// Largest absolute value of each margin in a first look: the scale of its rounding.
     scales: [f64; MARGINS],
     queue: VecDeque<Task>,
     leaves: Vec<Leaf>,
     /// Of pieces that were left undecided.
     lost: [f64; 2],
+    /// What the leaves carry, and the part of it below which an undecided piece is left out.
+    carried: [f64; 2],
+    negligible: f64,
     looks: usize,
 }
 
-/// ∫∫ of the integrand over rectangles of parameters, to `tolerance × |value + others|`.
-pub(super) fn integrate<I: Integrand>(
+/// ∫∫ of the integrand over rectangles of parameters, to `tolerance × max(|value + others|, floor)`.
+pub(in crate::bandwidth) fn integrate<I: Integrand>(
     integrand: &I,
     rectangles: &[[[f64; 2]; 2]],
     tolerance: f64,
     others: [f64; 2],
+    floor: [f64; 2],
 ) -> Pair {
     let mut cutter = Cutter {
         integrand,
+        fit: border::EXACT.max(0.02 * tolerance),
         scales: [1.0; MARGINS],
         queue: VecDeque::new(),
         leaves: Vec::new(),
         lost: [0.0; 2],
+        carried: others.map(f64::abs),
+        negligible: NEGLIGIBLE * tolerance,
         looks: 0,
     };
     let whole = integrand.domain();
@@ -111,13 +126,13 @@ pub(super) fn integrate<I: Integrand>(
             cutter.queue.push_back(Task {
                 chart: chart.part(range),
                 settled: 0,
-                ring: None,
+                rings: [0, integrand.edges().len()],
                 depth: 0,
             });
         }
     }
     cutter.drain();
-    cutter.refine(tolerance, others)
+    cutter.refine(tolerance, others, floor)
 }
 
 impl<I: Integrand> Cutter<'_, I> {
@@ -130,8 +145,8 @@ impl<I: Integrand> Cutter<'_, I> {
         const M: u32 = 8;
         let at = |k: u32| (2.0 * f64::from(k) + 1.0) / f64::from(M) - 1.0;
         for k in 0..M * M {
-            let (node, _) = self.node(chart, [at(k % M), at(k / M)]);
-            for (scale, g) in self.scales.iter_mut().zip(node.margins) {
+            let (u, _) = chart.at([at(k % M), at(k / M)]);
+            for (scale, g) in self.scales.iter_mut().zip(self.integrand.margins(u)) {
                 if f64::abs(g) > *scale && g.is_finite() {
                     *scale = f64::abs(g);
                 }
@@ -151,12 +166,15 @@ impl<I: Integrand> Cutter<'_, I> {
     }
 
     /// Halves the worst leaves until all errors together are small enough.
-    fn refine(&mut self, tolerance: f64, others: [f64; 2]) -> Pair {
+    fn refine(&mut self, tolerance: f64, others: [f64; 2], floor: [f64; 2]) -> Pair {
         let mut total = Pair::default();
         for leaf in &self.leaves {
             total.add(&leaf.pair);
         }
-        let target = |total: &Pair, k: usize| tolerance * (total.value[k] + others[k]).abs();
+        let slack = self.integrand.slack();
+        let target = |total: &Pair, k: usize| {
+            tolerance * slack[k] * (total.value[k] + others[k]).abs().max(floor[k])
+        };
         let urgency = |pair: &Pair, total: &Pair| {
             (0..2)
                 .map(|k| pair.error[k] / target(total, k).max(f64::MIN_POSITIVE))
@@ -205,29 +223,40 @@ impl<I: Integrand> Cutter<'_, I> {
 
     /// Leaves a piece out: what it can carry, from the samples that exist, becomes an error.
     fn lose(&mut self, task: &Task) {
+        let x = nodes();
+        let samples: Samples = core::array::from_fn(|l| {
+            core::array::from_fn(|k| self.node(&task.chart, [x[k], x[l]]))
+        });
+        let most = self.most(task, &samples);
+        self.leave(most);
+    }
+
+    fn leave(&mut self, most: [f64; 2]) {
+        for (lost, most) in self.lost.iter_mut().zip(most) {
+            *lost += 4.0 * most;
+        }
+    }
+
+    /// The largest integrand per chart area at the nodes, as if kernel and path existed at all of them.
+    fn most(&self, task: &Task, samples: &Samples) -> [f64; 2] {
+        let edges = self.integrand.edges();
         let mut most = [0.0_f64; 2];
-        for b in nodes() {
-            for a in nodes() {
-                let (node, area) = self.node(&task.chart, [*a, *b]);
-                let reached = self.integrand.edges().iter().position(|e| node.level < *e);
-                let Some(ring) = task.ring.or(reached) else {
-                    continue;
-                };
-                if node.margins.iter().any(|m| !(*m >= 0.0)) {
-                    continue;
-                }
-                let kernel = self.integrand.kernel(ring, &node);
-                for k in 0..2 {
-                    let v = f64::abs(node.density[k] * kernel[k] * area);
-                    if v.is_finite() {
-                        most[k] = most[k].max(v);
-                    }
+        for (node, area) in samples.iter().flatten() {
+            let reached = edges.iter().position(|e| node.level < *e);
+            let [first, last] = task.rings;
+            let ring = reached
+                .unwrap_or(edges.len())
+                .clamp(first, last)
+                .min(edges.len() - 1);
+            let kernel = self.integrand.kernel(ring, node);
+            for (most, (d, k)) in most.iter_mut().zip(node.density.iter().zip(kernel)) {
+                let v = f64::abs(d * k * area);
+                if v.is_finite() {
+                    *most = most.max(v);
                 }
             }
         }
-        for k in 0..2 {
-            self.lost[k] += 4.0 * most[k];
-        }
+        most
     }
 
     fn halve(&mut self, task: Task, axis: usize) {
@@ -246,7 +275,7 @@ impl<I: Integrand> Cutter<'_, I> {
 
     fn visit(&mut self, mut task: Task) {
         let x = nodes();
-        let samples: [[(Node, f64); N]; N] = core::array::from_fn(|l| {
+        let samples: Samples = core::array::from_fn(|l| {
             core::array::from_fn(|k| self.node(&task.chart, [x[k], x[l]]))
         });
         let grid = |f: &dyn Fn(&Node) -> f64| -> Grid {
@@ -256,13 +285,15 @@ impl<I: Integrand> Cutter<'_, I> {
 
         // The kernel first: most of the parameters are out of its reach.
         let mut level = None;
-        if task.ring.is_none() {
+        let edges = self.integrand.edges();
+        let undecided = |rings: [usize; 2]| rings[0] < rings[1];
+        if undecided(task.rings) {
             let least = grid(&|n| n.least);
             if finite(&least) {
                 let c = Chebyshev::new(&least);
                 let [p, q] = c.tails();
                 let bottom = c.c[0][0] - c.spread() - REMAINDER * (p + q);
-                if self.integrand.edges().last().is_none_or(|e| bottom >= *e) {
+                if edges.last().is_none_or(|e| bottom >= *e) {
                     return;
                 }
             }
@@ -271,20 +302,21 @@ impl<I: Integrand> Cutter<'_, I> {
                 let c = Chebyshev::new(&g);
                 let [p, q] = c.tails();
                 let spread = c.spread() + REMAINDER * (p + q);
-                let edges = self.integrand.edges();
-                let within = |e: f64| e > c.c[0][0] - spread && e < c.c[0][0] + spread;
-                if edges.last().is_none_or(|e| c.c[0][0] - spread >= *e) {
-                    return;
+                for (k, e) in edges.iter().enumerate() {
+                    if c.c[0][0] - spread >= *e {
+                        task.rings[0] = task.rings[0].max(k + 1);
+                    } else if c.c[0][0] + spread <= *e {
+                        task.rings[1] = task.rings[1].min(k);
+                    }
                 }
-                let crossed: Vec<usize> = (0..edges.len()).filter(|&k| within(edges[k])).collect();
-                if crossed.is_empty() {
-                    task.ring = edges.iter().position(|e| c.c[0][0] < *e);
-                } else {
-                    level = Some((crossed[crossed.len() / 2], g, c));
+                if undecided(task.rings) {
+                    let middle = (task.rings[0] + task.rings[1] - 1) / 2;
+                    level = Some((middle, g, c));
                 }
-            } else {
-                level = None;
             }
+        }
+        if task.rings[0] >= edges.len() {
+            return;
         }
 
         // Margins: violated everywhere, satisfied everywhere, or neither. One that is not a number somewhere may be so because
@@ -295,6 +327,11 @@ impl<I: Integrand> Cutter<'_, I> {
                 continue;
             }
             let g = grid(&|n| n.margins[m]);
+            // Conditions that a surface does not have.
+            if g[0][0] > 0.0 && g.iter().flatten().all(|v| *v == g[0][0]) {
+                task.settled |= 1 << m;
+                continue;
+            }
             if !finite(&g) {
                 dark |= task.depth >= DARK && g.iter().flatten().all(|v| !(*v >= 0.0));
                 unknown = unknown.or(Some((m, g, None)));
@@ -315,13 +352,20 @@ impl<I: Integrand> Cutter<'_, I> {
         if dark && mixed.is_none() {
             return;
         }
+        if task.depth >= SMALL && (level.is_some() || mixed.is_some() || unknown.is_some()) {
+            let most = self.most(&task, &samples);
+            if (0..2).all(|k| 4.0 * most[k] < self.negligible * self.carried[k]) {
+                self.leave(most);
+                return;
+            }
+        }
         // A kernel that is much smaller than the cell is approached by halving; what it does not reach is never cut.
         if let Some((edge, g, c)) = level {
             self.cut_kernel(task, edge, &g, &c);
             return;
         }
         if let Some((m, g, c)) = mixed.or(unknown) {
-            let value = |chart: &Chart, p: [f64; 2]| self.node(chart, p).0.margins[m];
+            let value = |chart: &Chart, p: [f64; 2]| self.integrand.margins(chart.at(p).0)[m];
             let found = border::find(
                 &task.chart,
                 &g,
@@ -329,23 +373,27 @@ impl<I: Integrand> Cutter<'_, I> {
                 task.depth,
                 self.scales[m],
                 true,
+                self.fit,
                 &value,
             );
-            self.follow(&task, found, Some(m), None);
+            self.follow(&task, found, m);
             return;
         }
-        let Some(ring) = task.ring else {
+        if undecided(task.rings) {
             let axis = (task.depth % 2) as usize;
             self.halve(task, axis);
             return;
-        };
+        }
+        let ring = task.rings[0];
         self.keep(task, ring, &samples);
     }
 
     /// Cuts a piece along an edge of the kernel.
     fn cut_kernel(&mut self, task: Task, edge: usize, g: &Grid, c: &Chebyshev) {
-        let (edges, top) = (self.integrand.edges(), self.integrand.edges().len() - 1);
-        let at = edges[edge];
+        let (at, top) = (
+            self.integrand.edges()[edge],
+            self.integrand.edges().len() - 1,
+        );
         // Rounding of the level, in units of the edge.
         let size = 1.0 + self.integrand.rounding() / f64::EPSILON;
         let mut parts = Vec::new();
@@ -358,7 +406,17 @@ impl<I: Integrand> Cutter<'_, I> {
             let g: Grid = g.map(|row| row.map(|v| offset + sign * v));
             let c = c.combined(sign, c, 0.0, offset);
             let value = |chart: &Chart, p: [f64; 2]| offset + sign * self.node(chart, p).0.level;
-            match border::find(&task.chart, &g, Some(&c), task.depth, size, false, &value) {
+            let depth = task.depth;
+            match border::find(
+                &task.chart,
+                &g,
+                Some(&c),
+                depth,
+                size,
+                false,
+                self.fit,
+                &value,
+            ) {
                 Border::Halve(axis) => {
                     self.halve(task, axis);
                     return;
@@ -366,30 +424,41 @@ impl<I: Integrand> Cutter<'_, I> {
                 Border::Parts(found) => parts.extend(found.into_iter().map(|p| (p, inside))),
             }
         }
-        // A single edge decides the ring; with several, the next look does.
         for ((chart, part), inside) in parts {
-            let decided = part != Part::Unknown && edges.len() == 1 && inside;
-            self.push(&task, chart, None, decided.then_some(0));
+            let [first, last] = task.rings;
+            let rings = match (part, inside) {
+                (Part::Unknown, _) => [first, last],
+                (_, true) => [first, edge],
+                (_, false) => [edge + 1, last],
+            };
+            self.push(
+                &Task {
+                    rings,
+                    ..task.clone()
+                },
+                chart,
+                None,
+            );
         }
     }
 
-    fn follow(&mut self, task: &Task, found: Border, margin: Option<usize>, ring: Option<usize>) {
+    fn follow(&mut self, task: &Task, found: Border, margin: usize) {
         match found {
             Border::Halve(axis) => self.halve(task.clone(), axis),
             Border::Parts(parts) => {
                 for (chart, part) in parts {
-                    let done = if part == Part::Unknown { None } else { margin };
-                    self.push(task, chart, done, ring);
+                    let done = (part != Part::Unknown).then_some(margin);
+                    self.push(task, chart, done);
                 }
             }
         }
     }
 
-    fn push(&mut self, task: &Task, chart: Chart, margin: Option<usize>, ring: Option<usize>) {
+    fn push(&mut self, task: &Task, chart: Chart, margin: Option<usize>) {
         let task = Task {
             chart,
             settled: task.settled | margin.map_or(0, |m| 1 << m),
-            ring: task.ring.or(ring),
+            rings: task.rings,
             depth: task.depth + 1,
         };
         if task.depth >= DEEPEST {
@@ -399,16 +468,34 @@ impl<I: Integrand> Cutter<'_, I> {
         }
     }
 
-    fn keep(&mut self, task: Task, ring: usize, samples: &[[(Node, f64); N]; N]) {
+    fn keep(&mut self, task: Task, ring: usize, samples: &Samples) {
+        let at = |l: usize, i: usize| {
+            let (node, area) = &samples[l][i];
+            let kernel = self.integrand.kernel(ring, node);
+            [0, 1].map(|k| node.density[k] * kernel[k] * area)
+        };
         let mut pair = Pair::default();
         let mut tails = [0.0; 2];
+        // Of a sliver beside a border one sample says enough.
+        if task.depth >= SMALL {
+            let middle = at(N / 2, N / 2).map(|v| 4.0 * v);
+            if (0..2).all(|k| f64::abs(middle[k]) < self.negligible * self.carried[k]) {
+                self.leaves.push(Leaf {
+                    task,
+                    pair: Pair {
+                        value: middle,
+                        error: middle.map(f64::abs),
+                    },
+                    axis: 0,
+                    urgency: 0.0,
+                });
+                return;
+            }
+        }
+        let values: [[[f64; 2]; N]; N] =
+            core::array::from_fn(|l| core::array::from_fn(|i| at(l, i)));
         for k in 0..2 {
-            let g: Grid = core::array::from_fn(|l| {
-                core::array::from_fn(|i| {
-                    let (node, area) = &samples[l][i];
-                    node.density[k] * self.integrand.kernel(ring, node)[k] * area
-                })
-            });
+            let g: Grid = values.map(|row| row.map(|v| v[k]));
             if !g.iter().flatten().all(|v| v.is_finite()) {
                 let axis = (task.depth % 2) as usize;
                 self.halve(task, axis);
@@ -417,9 +504,14 @@ impl<I: Integrand> Cutter<'_, I> {
             let c = Chebyshev::new(&g);
             let [p, q] = c.tails();
             pair.value[k] = c.integral();
-            pair.error[k] = 4.0 * (p + q);
+            // A curved end that is off by the fit changes the piece by as much.
+            pair.error[k] =
+                c.integral_error() + (self.fit - border::EXACT) * f64::abs(pair.value[k]);
             let scale = c.c[0][0].abs().max(f64::MIN_POSITIVE);
             tails = [tails[0] + p / scale, tails[1] + q / scale];
+        }
+        for (carried, value) in self.carried.iter_mut().zip(pair.value) {
+            *carried += f64::abs(value);
         }
         self.leaves.push(Leaf {
             task,

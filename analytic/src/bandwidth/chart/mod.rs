@@ -19,6 +19,8 @@ pub(super) mod scenes;
 mod star;
 mod surfaces;
 
+pub(super) use cutter::integrate as integrate_over;
+
 use super::quadrature::Pair;
 
 /// Number of margins of a node.
@@ -62,10 +64,18 @@ pub(super) trait Integrand {
     fn spans(&self) -> &[f64];
     /// A path.
     fn node(&self, u: [f64; 2]) -> Node;
+    /// The margins of a path alone.
+    fn margins(&self, u: [f64; 2]) -> [f64; MARGINS] {
+        self.node(u).margins
+    }
     /// φ and φ² between the edges `ring - 1` and `ring`.
     fn kernel(&self, ring: usize, node: &Node) -> [f64; 2];
     /// Relative rounding of the level at the kernel's edge.
     fn rounding(&self) -> f64;
+    /// What multiplies the tolerance of the mean and of the second moment.
+    fn slack(&self) -> [f64; 2] {
+        [1.0; 2]
+    }
     /// Cells along both axes on which nothing is hidden between nine samples.
     fn coarse(&self) -> [u32; 2] {
         [2, 2]
@@ -75,11 +85,11 @@ pub(super) trait Integrand {
 /// Roots that are taken out one by one; beyond, the parameters are cut.
 const MOST_ROOTS: u32 = 6;
 
-/// ∫∫ of an integrand, to `tolerance × |value|`.
+/// ∫∫ of an integrand, to `tolerance × max(|value|, floor)`.
 ///
 /// Where a kernel is small and nothing cuts it, its support is a convex spot about a root, which polar coordinates take
 /// at a hundredth of the cost. Such spots are cut out with a box, and what is left of the rectangle is searched for more.
-pub(super) fn integrate<I: Integrand>(integrand: &I, tolerance: f64) -> Pair {
+pub(super) fn integrate<I: Integrand>(integrand: &I, tolerance: f64, floor: [f64; 2]) -> Pair {
     let mut sum = Pair::default();
     let whole = integrand.domain();
     let mut boxes = vec![(whole, 0)];
@@ -105,6 +115,8 @@ pub(super) fn integrate<I: Integrand>(integrand: &I, tolerance: f64) -> Pair {
             }
         }
     }
-    sum.add(&cutter::integrate(integrand, &rest, tolerance, sum.value));
+    sum.add(&cutter::integrate(
+        integrand, &rest, tolerance, sum.value, floor,
+    ));
     sum
 }

@@ -80,13 +80,24 @@ pub(in crate::bandwidth) fn caustics(
         return None;
     }
     let source = source(kind)?;
-    let (surface, interaction) = single(kind)?;
-    Some(vec![Caustic {
+    let caustic = |(surface, interaction)| Caustic {
         photons: flux_of(&source, beam_area),
         source,
         surface,
         interaction,
-    }])
+    };
+    if let Kind::ConcaveSphere(s) = kind {
+        let up = vec3(0.0, 0.0, 1.0);
+        let angle = s.cap.half_angle_degrees.to_radians();
+        let parts = SphereCap::inside(Vec3::from_f64(s.cap.center), s.cap.radius, up, angle);
+        let mirror = |part| (shared(part), Interaction::Mirror(s.cap.reflectance));
+        return Some(parts.into_iter().map(mirror).map(caustic).collect());
+    }
+    Some(vec![caustic(single(kind)?)])
+}
+
+fn shared(surface: impl Surface + 'static) -> Arc<dyn Surface> {
+    Arc::new(surface)
 }
 
 /// The one surface of a kind, and what it does.
@@ -102,19 +113,9 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
             };
             (Arc::new(mirror), Interaction::Mirror(m.reflectance))
         }
-        Kind::ConcaveSphere(s) => {
-            let cap = SphereCap {
-                center: Vec3::from_f64(s.cap.center),
-                radius: s.cap.radius,
-                frame: frame_of(vec3(0.0, 0.0, 1.0)),
-                side: -1.0,
-                rim: tan(0.5 * s.cap.half_angle_degrees.to_radians()),
-            };
-            (Arc::new(cap), Interaction::Mirror(s.cap.reflectance))
-        }
         Kind::ConvexSphere(s) => {
             let center = Vec3::from_f64(s.ball.center);
-            let ball = ball(center, s.ball.radius, Vec3::from_f64(s.light.position));
+            let ball = ball(center, s.ball.radius, &point(&s.light));
             (Arc::new(ball), Interaction::Mirror(s.ball.reflectance))
         }
         Kind::CylinderCup(s) => {
@@ -191,8 +192,8 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
                 for w in &waves {
                     let phase = w.wave_vector[0] * u[0] + w.wave_vector[1] * u[1] + w.phase;
                     z += w.amplitude * cos(phase);
-                    for k in 0..2 {
-                        g[k] -= w.amplitude * w.wave_vector[k] * sin(phase);
+                    for (g, k) in g.iter_mut().zip(w.wave_vector) {
+                        *g -= w.amplitude * k * sin(phase);
                     }
                 }
                 (z, g, [1.0; 2])
@@ -276,44 +277,53 @@ fn level(height: f64, light: &PointLight, floor: &Floor) -> Level {
 }
 
 /// The part of a ball that the light sees.
-fn ball(center: Vec3<f64>, radius: f64, light: Vec3<f64>) -> SphereCap {
-    let d = light - center;
-    let length = d.length();
+fn ball(center: Vec3<f64>, radius: f64, source: &Source) -> SphereCap {
+    let (axis, rim) = match source {
+        Source::Point(y, _) => {
+            let d = *y - center;
+            let length = d.length();
+            (d * (1.0 / length), tan(0.5 * acos(radius / length)))
+        }
+        Source::Beam(d, _) => (-*d, 1.0),
+    };
     SphereCap {
         center,
         radius,
-        frame: frame_of(d * (1.0 / length)),
+        frame: frame_of(axis),
         side: 1.0,
-        rim: tan(0.5 * acos(radius / length)),
+        rim,
+        hole: 0.0,
+        whole: (axis, 1.0),
     }
 }
 
-/// A spherical mirror of the theory's tables.
-pub(in crate::bandwidth) fn sphere(mirror: &SphereMirror<f64>) -> Option<Caustic> {
-    let Light::Point {
-        position,
-        intensity,
-    } = mirror.light
-    else {
-        return None;
+/// A spherical mirror of the theory's tables. The photons of parallel light are uniform over the sphere's cross-section.
+pub(in crate::bandwidth) fn sphere(mirror: &SphereMirror<f64>) -> Vec<Caustic> {
+    let source = match mirror.light {
+        Light::Point {
+            position,
+            intensity,
+        } => Source::Point(position, intensity),
+        Light::Beam {
+            direction,
+            irradiance,
+        } => Source::Beam(direction, irradiance),
     };
-    let source = Source::Point(position, intensity);
-    let surface = match mirror.side {
-        Side::Convex => ball(mirror.centre, mirror.radius, position),
-        Side::Concave => SphereCap {
-            center: mirror.centre,
-            radius: mirror.radius,
-            frame: frame_of(mirror.cap_axis),
-            side: -1.0,
-            rim: tan(0.5 * acos(mirror.cap_cos_min)),
-        },
+    let (center, radius) = (mirror.centre, mirror.radius);
+    let surfaces = match mirror.side {
+        Side::Convex => vec![ball(center, radius, &source)],
+        Side::Concave => {
+            SphereCap::inside(center, radius, mirror.cap_axis, acos(mirror.cap_cos_min))
+        }
     };
-    Some(Caustic {
-        photons: flux_of(&source, 0.0),
+    let cross_section = core::f64::consts::PI * radius * radius;
+    let caustic = |surface| Caustic {
+        photons: flux_of(&source, cross_section),
         source,
-        surface: Arc::new(surface),
+        surface: shared(surface),
         interaction: Interaction::Mirror(mirror.reflectance),
-    })
+    };
+    surfaces.into_iter().map(caustic).collect()
 }
 
 /// A flat interface of the theory's tables; `None` where the light is reflected.

@@ -1,8 +1,9 @@
 //! Specular surfaces as two-parameter families of points.
 
+use core::f64::consts::PI;
 use core::fmt::Debug;
 
-use libm::{cos, sin, sqrt};
+use libm::{cos, sin, sqrt, tan};
 
 use crate::vector::{Vec3, vec3};
 
@@ -71,6 +72,33 @@ pub(in crate::bandwidth) struct SphereCap {
     pub side: f64,
     /// tan of half the angle of the rim.
     pub rim: f64,
+    /// The same for a hole about the axis; 0 for none.
+    pub hole: f64,
+    /// Axis and cosine of the angle of the whole cap that this is a part of: what can be in the way.
+    pub whole: (Vec3<f64>, f64),
+}
+
+impl SphereCap {
+    /// A mirror on the inner side of a cap of any size: one part, or two.
+    pub fn inside(center: Vec3<f64>, radius: f64, axis: Vec3<f64>, angle: f64) -> Vec<SphereCap> {
+        let part = |axis, rim: f64, hole: f64, whole| SphereCap {
+            center,
+            radius,
+            frame: frame_of(axis),
+            side: -1.0,
+            rim: tan(0.5 * rim),
+            hole: tan(0.5 * hole),
+            whole,
+        };
+        let whole = (axis, cos(angle));
+        if angle <= 0.55 * PI {
+            return vec![part(axis, angle, 0.0, whole)];
+        }
+        vec![
+            part(axis, 0.5 * PI, 0.0, whole),
+            part(-axis, 0.5 * PI, PI - angle, whole),
+        ]
+    }
 }
 
 /// Two unit vectors across a unit vector, and that vector.
@@ -99,7 +127,15 @@ impl Surface for SphereCap {
             point: self.center + n * self.radius,
             normal: n * self.side,
             area: scale * scale,
-            margins: [self.rim * self.rim - square, 1.0, 1.0],
+            margins: [
+                self.rim * self.rim - square,
+                if self.hole > 0.0 {
+                    square - self.hole * self.hole
+                } else {
+                    1.0
+                },
+                1.0,
+            ],
         }
     }
 
@@ -108,12 +144,11 @@ impl Surface for SphereCap {
             return [1.0; 2];
         }
         // Inside, both legs meet the sphere again after a chord; they are free where that is off the cap, or behind the end.
-        let rim = self.rim * self.rim;
-        let cos_rim = (1.0 - rim) / (1.0 + rim);
+        let (axis, cos_rim) = self.whole;
         legs.map(|d, length| {
             let chord = 2.0 * self.radius * d.dot(*normal);
             let again = *s + *d * chord;
-            let off = cos_rim - (again - self.center).dot(self.frame[2]) / self.radius;
+            let off = cos_rim - (again - self.center).dot(axis) / self.radius;
             any(&[off, chord - length])
         })
     }
