@@ -3,6 +3,8 @@
 use core::f64::consts::PI;
 use std::sync::Arc;
 
+use super::chart::chain::Chained;
+use super::chart::chains::{Chains, chains};
 use super::chart::connection::{Caustic, Connection, LANDING, Link, Receiver, Source};
 use super::chart::merging::Merging;
 use super::chart::{integrate, scenes};
@@ -47,6 +49,8 @@ struct Class {
     class: PathClass,
     /// What is connected through a mollified vertex.
     caustics: Vec<Caustic>,
+    /// What is connected through the last of several vertices.
+    chains: Option<Chains>,
     /// What lands on the floor.
     bundles: Vec<Arc<dyn Bundle>>,
     /// Flux of all photons [W].
@@ -113,17 +117,21 @@ impl EntryExpectation {
             }
             // Any number of interactions can be merged; what is connected is mollified at one vertex.
             let caustics = scenes::caustics(&entry.kind, class, beam_area);
-            let bundles = match (bundles.get_mut(position), &caustics) {
-                (Some(b), None) if technique == Technique::Merge => core::mem::take(b),
-                _ => Vec::new(),
+            let (bundles, chains) = match (bundles.get_mut(position), &caustics) {
+                (Some(b), None) if technique == Technique::Merge => (core::mem::take(b), None),
+                (_, None) if technique != Technique::Merge => {
+                    (Vec::new(), chains(&entry.kind, class))
+                }
+                _ => (Vec::new(), None),
             };
             let caustics = caustics.unwrap_or_default();
-            if caustics.is_empty() && bundles.is_empty() {
+            if caustics.is_empty() && bundles.is_empty() && chains.is_none() {
                 return Err(unknown());
             }
             classes.push(Class {
                 class,
                 caustics,
+                chains,
                 bundles,
                 photons: scenes::photons(&entry.kind, beam_area).ok_or_else(unknown)?,
             });
@@ -195,6 +203,7 @@ impl EntryExpectation {
             class: PathClass::LSDE,
             photons: caustics.first().map_or(0.0, |c| c.photons),
             caustics,
+            chains: None,
             bundles: Vec::new(),
         };
         Ok(Self::of(vec![class], receiver, estimator))
@@ -235,7 +244,7 @@ impl EntryExpectation {
             (sum.value[1], sum.error[1]) = (f64::NAN, f64::INFINITY);
         }
         for caustic in &class.caustics {
-            let connect = |link| {
+            sum.add(&self.connected(|link| {
                 let c = Connection::new(
                     caustic,
                     x,
@@ -245,26 +254,25 @@ impl EntryExpectation {
                     link,
                 );
                 integrate(&c, tolerance, floor)
-            };
-            if self.technique != Technique::Linked {
-                sum.add(&connect(None));
-                continue;
-            }
-            let share = 1.0 / self.bandwidths.len() as f64;
-            for &radius in &self.bandwidths {
-                let link = |escapes| Link {
-                    convention: self.convention,
-                    radius,
-                    kernel: self.kernel,
-                    escapes,
-                };
-                sum.add(&connect(Some(link(None))).scaled(share));
-                if self.convention == Convention::Exact && self.receiver.escape.is_some() {
-                    for k in 0..LANDING {
-                        sum.add(&connect(Some(link(Some(k)))).scaled(share));
-                    }
-                }
-            }
+            }));
+        }
+        for (source, chain) in class
+            .chains
+            .iter()
+            .flat_map(|c| c.families.iter().map(|chain| (c.source, chain)))
+        {
+            sum.add(&self.connected(|link| {
+                Chained::new(
+                    chain.as_ref(),
+                    (source, class.photons),
+                    x,
+                    self.receiver,
+                    self.technique,
+                    &self.profile,
+                    link,
+                )
+                .map_or_else(Pair::default, |c| integrate(&c, tolerance, floor))
+            }));
         }
         let bounded = |k: usize| Bounded {
             value: sum.value[k],
@@ -274,6 +282,30 @@ impl EntryExpectation {
             mean: bounded(0),
             second_moment: bounded(1),
         }
+    }
+
+    /// The sum over all links of what is connected, or the one value of a technique that links nothing.
+    fn connected(&self, connect: impl Fn(Option<Link>) -> Pair) -> Pair {
+        if self.technique != Technique::Linked {
+            return connect(None);
+        }
+        let mut sum = Pair::default();
+        let share = 1.0 / self.bandwidths.len() as f64;
+        for &radius in &self.bandwidths {
+            let link = |escapes| Link {
+                convention: self.convention,
+                radius,
+                kernel: self.kernel,
+                escapes,
+            };
+            sum.add(&connect(Some(link(None))).scaled(share));
+            if self.convention == Convention::Exact && self.receiver.escape.is_some() {
+                for k in 0..LANDING {
+                    sum.add(&connect(Some(link(Some(k)))).scaled(share));
+                }
+            }
+        }
+        sum
     }
 }
 

@@ -33,6 +33,7 @@ pub(super) fn form(scene: &ClosedCupScene) -> impl Form + use<> {
             radius: scene.wall.radius,
             depth: scene.depth(),
             irradiance: scene.light.irradiance * sin(elevation),
+            weight: 1.0,
             bounces: 0,
             extent: scene.extent(),
         },
@@ -78,6 +79,7 @@ impl Form for ClosedCup {
             let weight = (0..bounces).fold(1.0, |w, _| w * self.cup.reflectance);
             vec![Arc::new(BeamRays {
                 irradiance: self.rays.irradiance * weight,
+                weight,
                 bounces,
                 ..self.rays
             })]

@@ -78,7 +78,8 @@ impl Form for Cap {
             centre: self.mirror.centre,
             radius: self.mirror.radius,
             light,
-            strength: intensity * self.mirror.reflectance,
+            intensity,
+            reflectance: self.mirror.reflectance,
             rim: tan(0.5 * self.half_angle),
             cos_rim: self.mirror.cap_cos_min,
         };
@@ -93,8 +94,10 @@ struct CapBundle {
     centre: Vec3<f64>,
     radius: f64,
     light: Vec3<f64>,
-    /// I R [W/sr].
-    strength: f64,
+    /// I [W/sr].
+    intensity: f64,
+    /// R.
+    reflectance: f64,
     /// Stereographic radius of the rim, tan of half its angle.
     rim: f64,
     cos_rim: f64,
@@ -131,8 +134,12 @@ impl Bundle for CapBundle {
         let area = self.radius * 2.0 * k;
         Ray {
             floor: [point.x + reflected.x * t, point.y + reflected.y * t],
-            flux: self.strength * cosine / (r1 * r1) * area * area,
+            flux: self.intensity * self.reflectance * cosine / (r1 * r1) * area * area,
             margins,
         }
+    }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        Some(self.reflectance)
     }
 }

@@ -137,7 +137,7 @@ impl Form for Mirror {
             }),
             Shape::Hyperboloid(mirror) => {
                 let ([ax, ay], lit) = (conic.center, slope * conic.image_z);
-                Arc::new(FloorLight::new(&self.floor, move |x, y| {
+                let light = FloorLight::new(&self.floor, move |x, y| {
                     let (x, y) = (x - ax, y - ay);
                     let mut margins = [1.0; MARGINS];
                     if lit < f64::INFINITY {
@@ -145,7 +145,8 @@ impl Form for Mirror {
                     }
                     let root = mirror.reflection(x, y);
                     (root.map_or(0.0, |r| r.irradiance), margins)
-                }))
+                });
+                Arc::new(light.with_weight(mirror.reflectance))
             }
         };
         Some(vec![vec![self.direct.bundle(&self.floor)], vec![reflected]])
@@ -179,5 +180,9 @@ impl Bundle for FocusBundle {
             flux: root.map_or(0.0, |r| r.irradiance),
             margins,
         }
+    }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        Some(self.unit.reflectance)
     }
 }

@@ -76,7 +76,8 @@ impl Form for Ball {
             let mut sum = 0.0;
             mirror.for_each_lit_root(vec3(x, y, 0.0), |root| sum += root.irradiance);
             (sum, margins(x, y))
-        });
+        })
+        .with_weight(mirror.reflectance);
         Some(vec![vec![Arc::new(direct)], vec![Arc::new(reflected)]])
     }
 }

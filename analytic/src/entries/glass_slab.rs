@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{Form, PointTruth};
 use crate::flux::{Bundle, MARGINS, Ray};
 use crate::kinds::glass_slab::GlassSlab;
+use crate::kinds::power;
 use crate::scene::{Family, Floor, GlassSlabScene};
 use crate::vector::Vec3;
 
@@ -69,5 +70,11 @@ impl Bundle for OrderBundle {
             flux: self.form.root(u[0], u[1], self.order).irradiance,
             margins: [1.0; MARGINS],
         }
+    }
+
+    fn weight(&self, u: [f64; 2]) -> Option<f64> {
+        let root = self.form.root(u[0], u[1], self.order);
+        let inside = power(root.reflectance, 2 * self.order);
+        Some(root.transmittance * root.transmittance * inside)
     }
 }

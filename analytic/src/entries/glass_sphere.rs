@@ -174,4 +174,8 @@ impl Bundle for Caustic {
             margins,
         }
     }
+
+    fn weight(&self, [incidence, _]: [f64; 2]) -> Option<f64> {
+        Some(self.ball.form.weight_of(incidence, self.interactions))
+    }
 }

@@ -61,7 +61,8 @@ impl Form for Dish {
                 mirror.reflection(x, y).map_or(0.0, |r| r.irradiance),
                 margins,
             )
-        });
+        })
+        .with_weight(mirror.reflectance);
         Some(vec![
             vec![self.direct.bundle(&self.floor)],
             vec![Arc::new(beam)],

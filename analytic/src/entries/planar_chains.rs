@@ -7,6 +7,7 @@ use crate::class::PathClass;
 use crate::flux::{Bundle, MARGINS, Ray};
 use crate::kinds::open_floor::{FloorLight, OpenFloor};
 use crate::kinds::planar_chains::Wedge;
+use crate::kinds::power;
 use crate::scene::{Family, Floor, PlanarChainsScene};
 
 #[derive(Debug)]
@@ -85,5 +86,9 @@ impl Bundle for Bounces {
             flux: images.into_iter().flatten().map(|i| i.irradiance).sum(),
             margins: [1.0; MARGINS],
         }
+    }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        Some(power(self.form.reflectance, self.bounces))
     }
 }

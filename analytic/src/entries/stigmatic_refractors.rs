@@ -92,4 +92,8 @@ impl Bundle for Lens {
             margins: [1.0; MARGINS],
         }
     }
+
+    fn weight(&self, [tangent, _]: [f64; 2]) -> Option<f64> {
+        Some(self.form.transmittance(tangent))
+    }
 }

@@ -46,4 +46,8 @@ impl Bundle for Underwater {
             margins: [1.0; MARGINS],
         }
     }
+
+    fn weight(&self, u: [f64; 2]) -> Option<f64> {
+        Some(self.form.root(u[0], u[1]).weight)
+    }
 }

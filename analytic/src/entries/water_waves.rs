@@ -69,4 +69,8 @@ impl Bundle for Pool {
             margins: [1.0; MARGINS],
         }
     }
+
+    fn weight(&self, u: [f64; 2]) -> Option<f64> {
+        Some(self.form.ray(u).transmittance)
+    }
 }

@@ -1,4 +1,4 @@
-//! Light that comes straight to the floor, as a bundle whose parameters are the floor point.
+//! Light of a known irradiance, as a bundle whose parameters are the floor point.
 
 use core::fmt::{self, Debug, Formatter};
 
@@ -9,6 +9,7 @@ use crate::scene::Floor;
 pub struct FloorLight<F> {
     domain: [[f64; 2]; 2],
     irradiance: F,
+    weight: Option<f64>,
 }
 
 impl<F> FloorLight<F>
@@ -23,6 +24,15 @@ where
                 [center - half, center + half]
             }),
             irradiance,
+            weight: None,
+        }
+    }
+
+    /// The same light, known to have lost all but this part of its flux on the way.
+    pub fn with_weight(self, weight: f64) -> Self {
+        FloorLight {
+            weight: Some(weight),
+            ..self
         }
     }
 }
@@ -50,5 +60,9 @@ where
             flux,
             margins,
         }
+    }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        self.weight
     }
 }

@@ -89,7 +89,7 @@ pub fn rounding_error<S: Scalar>(value: S, conditioning: S) -> S {
 }
 
 /// `base^exponent` by repeated squaring.
-fn power<S: Scalar>(base: S, mut exponent: u32) -> S {
+pub(crate) fn power<S: Scalar>(base: S, mut exponent: u32) -> S {
     let (mut result, mut square) = (S::ONE, base);
     while exponent > 0 {
         if exponent % 2 == 1 {

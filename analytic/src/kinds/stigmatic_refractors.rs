@@ -245,9 +245,17 @@ impl<S: Scalar> StigmaticRefractor<S> {
 
     /// Intensity of the light towards the focus from the angle with this tangent from the axis [W/sr].
     pub fn intensity(&self, tangent: S) -> S {
+        self.towards_focus(tangent).intensity
+    }
+
+    /// Transmittance T of that light.
+    pub fn transmittance(&self, tangent: S) -> S {
+        self.towards_focus(tangent).transmittance
+    }
+
+    fn towards_focus(&self, tangent: S) -> Ray<S> {
         let slant = tangent.hypot(S::ONE);
-        let ray = self.front.ray(self.index, S::ONE / slant, tangent / slant);
-        ray.intensity
+        self.front.ray(self.index, S::ONE / slant, tangent / slant)
     }
 
     /// The focus.

@@ -145,7 +145,7 @@ impl Plane {
 }
 
 /// Squared chord of an angle: 4 sin²(g/2).
-fn squared_chord(g: f64) -> f64 {
+pub(super) fn squared_chord(g: f64) -> f64 {
     let s = libm::sin(0.5 * g);
     4.0 * s * s
 }
@@ -340,21 +340,7 @@ impl Integrand for Connection<'_> {
         if let Some(link) = &self.link {
             let (out, _) = exact(&mut margins);
             distance = link.distance(&self.receiver, &s, &out, [r1, r2], &mut margins);
-            // The support is D² < k B² with the squared band B² = 4 sin²(α/2) (von Mises–Fisher: α²), tan α = r κ, κ = 1/d: even
-            // in κ, so that D² − k B² is smooth where the ray turns away from the floor.
-            let tangent = link.radius / distance;
-            let band = match link.kernel {
-                Kernel::VonMisesFisher => {
-                    let alpha = libm::atan(tangent);
-                    alpha * alpha
-                }
-                _ => {
-                    let secant = hypot(1.0, tangent);
-                    2.0 * tangent * tangent / (secant * (secant + 1.0))
-                }
-            };
-            level += link.reach() * (link.radius * link.radius - band);
-            deflection = difference * (1.0 / sqrt(band));
+            (level, deflection) = link.scaled(difference, distance);
         }
         Node {
             level,
@@ -376,10 +362,45 @@ impl Integrand for Connection<'_> {
             };
             return self.profile.in_ring(ring, g);
         };
-        let alpha = atan2(link.radius, node.distance);
+        link.kernel_at(node)
+    }
+}
+
+impl Link {
+    /// The end of the kernel as D²/B²: beyond k(1 − cos g) = 40, that is D² = 80/k = 20 α², nothing is left.
+    pub(super) fn reach(&self) -> f64 {
+        match self.kernel {
+            Kernel::VonMisesFisher => 20.0,
+            _ => 1.0,
+        }
+    }
+
+    /// The level and the deflection of a difference D of unit directions at the linked distance.
+    ///
+    /// The support is D² < k B² with the squared band B² = 4 sin²(α/2) (von Mises–Fisher: α²), tan α = r κ, κ = 1/d: even
+    /// in κ, so that D² − k B² is smooth where the ray turns away from the floor.
+    pub(super) fn scaled(&self, difference: Vec3<f64>, distance: f64) -> (f64, Vec3<f64>) {
+        let tangent = self.radius / distance;
+        let band = match self.kernel {
+            Kernel::VonMisesFisher => {
+                let alpha = libm::atan(tangent);
+                alpha * alpha
+            }
+            _ => {
+                let secant = hypot(1.0, tangent);
+                2.0 * tangent * tangent / (secant * (secant + 1.0))
+            }
+        };
+        let level = difference.length_squared() + self.reach() * (self.radius * self.radius - band);
+        (level, difference * (1.0 / sqrt(band)))
+    }
+
+    /// φ and φ² at a node.
+    pub(super) fn kernel_at(&self, node: &Node) -> [f64; 2] {
+        let alpha = atan2(self.radius, node.distance);
         // D²/B².
         let ratio = node.square();
-        let phi = match link.kernel {
+        let phi = match self.kernel {
             Kernel::VonMisesFisher => {
                 let (k, n) = von_mises_fisher(alpha);
                 n * exp(-0.5 * k * ratio * alpha * alpha)
@@ -393,19 +414,9 @@ impl Integrand for Connection<'_> {
         };
         [phi, phi * phi]
     }
-}
-
-impl Link {
-    /// The end of the kernel as D²/B²: beyond k(1 − cos g) = 40, that is D² = 80/k = 20 α², nothing is left.
-    fn reach(&self) -> f64 {
-        match self.kernel {
-            Kernel::VonMisesFisher => 20.0,
-            _ => 1.0,
-        }
-    }
 
     /// The distance d, with the conditions of landing (or of the first that fails) as margins.
-    fn distance(
+    pub(super) fn distance(
         &self,
         receiver: &Receiver,
         s: &Vec3<f64>,

@@ -10,6 +10,8 @@
 //!
 //! w the density of the mean and f the value of one sample, both without the kernel (`theory/bandwidth.md` sections 2 and 4).
 
+pub(super) mod chain;
+pub(super) mod chains;
 pub(super) mod connection;
 mod cutter;
 pub(super) mod merging;

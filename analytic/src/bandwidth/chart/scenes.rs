@@ -33,7 +33,7 @@ fn vertical(light: &VerticalLight) -> Source {
 }
 
 /// The light of a kind with specular surfaces.
-fn source(kind: &Kind) -> Option<Source> {
+pub(super) fn source(kind: &Kind) -> Option<Source> {
     Some(match kind {
         Kind::Diffuse(_) | Kind::Furnace(_) => return None,
         Kind::PlanarMirror(s) => point(&s.light),
@@ -391,6 +391,11 @@ pub(in crate::bandwidth) fn diagonal(kind: &Kind) -> Option<f64> {
             arc(a, half, s.wall.height).into_iter().for_each(&mut add);
         }
         Kind::ClosedCup(s) => disc([0.0; 2], s.wall.radius, [0.0, s.wall.height]),
+        Kind::GlassPillar(s) => disc(s.pillar.center, s.pillar.radius, [0.0, s.pillar.height]),
+        Kind::GlassSphere(s) => {
+            let ([x, y, z], r) = (s.glass.center, s.glass.radius);
+            disc([x, y], r, [z - r, z + r]);
+        }
         Kind::Paraboloid(s) => disc(
             s.dish.center,
             s.dish.outer_radius,

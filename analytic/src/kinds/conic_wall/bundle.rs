@@ -90,4 +90,8 @@ impl Bundle for ConicRays {
             margins,
         }
     }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        (self.part != ConicPart::Stopped).then_some(self.wall.reflectance)
+    }
 }

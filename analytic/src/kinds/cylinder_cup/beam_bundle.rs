@@ -23,6 +23,8 @@ pub struct BeamRays {
     pub depth: f64,
     /// Irradiance of the floor by the light after its reflections, E0 sin ε R^k [W/m²].
     pub irradiance: f64,
+    /// R^k.
+    pub weight: f64,
     /// Number of reflections k.
     pub bounces: u32,
     /// Rays may be left out that come no nearer to the axis than this many radii, below 1.
@@ -58,5 +60,9 @@ impl Bundle for BeamRays {
             flux: self.irradiance * 0.5 * chord * chord,
             margins,
         }
+    }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        Some(self.weight)
     }
 }

@@ -66,4 +66,8 @@ impl Bundle for LampRays {
             margins: [1.0; MARGINS],
         }
     }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        (self.part == LampPart::Reflected).then_some(self.reflectance)
+    }
 }

@@ -75,4 +75,12 @@ impl Bundle for GlassRays {
             margins,
         }
     }
+
+    fn weight(&self, u: [f64; 2]) -> Option<f64> {
+        let GlassPart::Interactions(m) = self.part else {
+            return None;
+        };
+        let ray = self.pillar.meridian().ray(u[0], m);
+        Some(self.pillar.weight(&ray, m))
+    }
 }

@@ -25,4 +25,9 @@ impl<S: Scalar> GlassSphere<S> {
             flux: self.irradiance * self.weight(&ray, interactions) * section,
         }
     }
+
+    /// Product W of the Fresnel factors of the rays that come in at the angle `incidence`.
+    pub fn weight_of(&self, incidence: S, interactions: u32) -> S {
+        self.weight(&self.ray(incidence, interactions), interactions)
+    }
 }

@@ -95,4 +95,8 @@ impl Bundle for PillarRays {
             margins: [1.0; MARGINS],
         }
     }
+
+    fn weight(&self, _: [f64; 2]) -> Option<f64> {
+        (self.part == PillarPart::Reflected).then_some(self.pillar.reflectance)
+    }
 }
