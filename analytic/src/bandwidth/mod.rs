@@ -21,6 +21,7 @@ pub mod entry;
 pub mod film;
 mod hits;
 mod kernel;
+pub mod law;
 mod linked;
 mod merge;
 mod polar;
