@@ -46,21 +46,48 @@ fn sphere_moments(mirror: &SphereMirror<f64>, t: Technique, k: Kernel, x: [f64; 
     [m.mean.value, m.second_moment.value]
 }
 
+/// The fold of E1 in the receiver's plane.
+const FOLD: f64 = 0.127_777_842_698_993_61;
+
 #[test]
 fn sphere_axis_is_the_closed_form() {
     let mirror = e1();
-    for kernel in [Kernel::Cone, Kernel::Epanechnikov, Kernel::VonMisesFisher] {
-        let share = if kernel == Kernel::Epanechnikov { 1.0 / 3.0 } else { 0.5 };
-        let closed = closed::sphere_axis(1.0, 1.3, 0.7);
-        // theory/reference/bandwidth-concave-sphere.json, E1-axis.
-        assert!((closed[0] - 66.265432098765432).abs() < 1e-11);
-        assert!((closed[1] - 64.598765432098765).abs() < 1e-11);
+    let closed = closed::sphere_axis(1.0, 1.3, 0.7);
+    // theory/reference/bandwidth-concave-sphere.json, E1-axis.
+    assert!((closed[0] - 66.265_432_098_765_43).abs() < 1e-11);
+    assert!((closed[1] - 64.598_765_432_098_77).abs() < 1e-11);
+    for (kernel, share) in [
+        (Kernel::Cone, 0.5),
+        (Kernel::Epanechnikov, 1.0 / 3.0),
+        (Kernel::VonMisesFisher, 0.5),
+    ] {
         for (technique, kappa) in [Technique::Camera, Technique::Light].into_iter().zip(closed) {
             let law = sphere_law(&mirror, technique, kernel, [0.0; 2]);
-            println!("{law:?}");
+            let exact = kappa * share * 250.0 / 9.0;
+            assert_eq!((law.place, law.order, law.roots), (Place::Smooth, Some(2.0), 1));
+            assert!((law.coefficient / exact - 1.0).abs() < 1e-8, "{technique} {kernel} {law:?}");
+            assert!(law.error < 1e-8 * exact);
+            assert!((law.limit.unwrap() * 9.0 / 250.0 - 1.0).abs() < 1e-12);
         }
     }
-    for r in [0.1, 0.5, 0.85, 0.89, 0.9, 0.95, 1.2] {
-        println!("{r} {:?}", sphere_law(&mirror, Technique::Merge, Kernel::Disc, [r, 0.0]));
+}
+
+#[test]
+fn fold_of_a_sphere() {
+    let mirror = e1();
+    for (t, k) in [(Technique::Merge, Kernel::Disc), (Technique::Camera, Kernel::Cone), (Technique::Light, Kernel::Epanechnikov), (Technique::Light, Kernel::VonMisesFisher)] {
+        let law = sphere_law(&mirror, t, k, [FOLD, 0.0]);
+        println!("{:?}", (law.place, law.order, law.coefficient, law.squared, law.reach, law.roots));
+        for b in [1e-3, 1e-4, 1e-5, 1e-6] {
+            let [m, s] = sphere_moments(&mirror, t, k, [FOLD, 0.0], b);
+            println!("{b} {} {}", m / law.mean(b), s / law.second_moment(b));
+        }
+    }
+    for d in [1e-2, 1e-3, 1e-4] {
+        for s in [-1.0, 1.0] {
+            let law = sphere_law(&mirror, Technique::Camera, Kernel::Cone, [FOLD + s * d, 0.0]);
+            println!("{d} {s} {:?}", (law.place, law.limit, law.order, law.coefficient, law.squared, law.reach, law.roots));
+            println!("{:?} {:?}",sphere_moments(&mirror, Technique::Camera, Kernel::Cone, [FOLD + s * d, 0.0], law.reach * 0.999),sphere_moments(&mirror, Technique::Camera, Kernel::Cone, [FOLD + s * d, 0.0], law.reach * 1.001));
+        }
     }
 }

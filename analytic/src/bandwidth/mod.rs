@@ -24,6 +24,7 @@ mod kernel;
 pub mod law;
 mod linked;
 mod merge;
+pub mod optimum;
 mod polar;
 pub mod probe;
 mod quadrature;

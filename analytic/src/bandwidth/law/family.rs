@@ -18,9 +18,9 @@ use crate::scene::{Entry, InvalidParameter};
 #[derive(Clone, Debug)]
 pub(in crate::bandwidth) struct Class {
     pub class: PathClass,
-    caustics: Vec<Caustic>,
-    bundles: Vec<Arc<dyn Bundle>>,
-    photons: f64,
+    pub caustics: Vec<Caustic>,
+    pub bundles: Vec<Arc<dyn Bundle>>,
+    pub photons: f64,
 }
 
 /// A technique on an entry.
@@ -230,7 +230,7 @@ impl Family {
     }
 
     /// The paths of a class about a floor point.
-    pub fn maps<'a>(&'a self, class: &'a Class, x: [f64; 2]) -> Vec<Map<'a>> {
+    pub(super) fn maps<'a>(&'a self, class: &'a Class, x: [f64; 2]) -> Vec<Map<'a>> {
         let connect = |caustic, technique, link| {
             Connection::new(caustic, x, self.receiver, technique, &self.profile, link)
         };

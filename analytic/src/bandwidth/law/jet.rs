@@ -58,8 +58,6 @@ pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jet {
     derivatives: [[[f64; 4]; 4]; 4],
-    /// Density of the second moment, the value only.
-    pub squared: f64,
     /// Curvature of the space of offsets.
     pub curvature: f64,
 }
@@ -68,14 +66,14 @@ impl Jet {
     /// About `u` with steps `h` of `size` along both axes.
     pub fn new(map: &Map<'_>, u: [f64; 2], size: [f64; 2], h: f64) -> Jet {
         let mut values = [[[0.0; 4]; 9]; 9];
-        let (mut squared, mut curvature) = (0.0, 0.0);
+        let mut curvature = 0.0;
         for (l, row) in values.iter_mut().enumerate() {
             for (k, value) in row.iter_mut().enumerate() {
                 let at = [k as f64 - 4.0, l as f64 - 4.0];
                 let s = map.at([0, 1].map(|i| u[i] + h * at[i] * size[i]));
                 *value = [s.offset[0], s.offset[1], s.offset[2], s.density[0]];
                 if k == 4 && l == 4 {
-                    (squared, curvature) = (s.density[1], s.curvature);
+                    curvature = s.curvature;
                 }
             }
         }
@@ -97,7 +95,6 @@ impl Jet {
         }
         Jet {
             derivatives,
-            squared,
             curvature,
         }
     }

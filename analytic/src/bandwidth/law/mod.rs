@@ -22,7 +22,7 @@
 
 pub mod closed;
 mod constants;
-mod family;
+pub(in crate::bandwidth) mod family;
 mod jet;
 mod roots;
 mod singular;
@@ -30,7 +30,7 @@ mod smooth;
 
 use constants::Shape;
 use family::{Class, Family, Map};
-use roots::{Found, find};
+use roots::{Found, complete, find};
 use singular::Leading;
 
 use super::{Convention, Kernel, Technique};
@@ -93,7 +93,8 @@ pub struct Law {
     pub squared_order: f64,
     /// Its coefficient.
     pub squared: f64,
-    /// Bandwidth at which the support meets something else: an edge (to first order), a fold, or a part of the surface without a perfect path.
+    /// Bandwidth at which the support meets something else: an edge (to first order), a fold, or a part of the surface without a perfect
+    /// path; 0 on a caustic.
     pub reach: f64,
     /// Number of perfect paths; those on a singularity count as one.
     pub roots: usize,
@@ -129,7 +130,7 @@ impl Law {
 /// The small-bandwidth laws of an estimator.
 #[derive(Clone, Debug)]
 pub struct SmallBandwidth {
-    family: Family,
+    pub(in crate::bandwidth) family: Family,
     shape: Shape,
     truth: Option<FloorTruth>,
 }
@@ -229,9 +230,22 @@ impl SmallBandwidth {
         let (mut edge, mut first) = (false, 0.0);
         let mut leading: Option<(Place, Leading)> = None;
         for map in &self.family.maps(class, x) {
-            let found = find(map, cells, unit);
-            if let Some(&(_, nearest)) = found.approaches.first() {
-                law.reach = law.reach.min(nearest);
+            let mut found = find(map, cells, unit);
+            // Roots come in pairs at a fold: the other one is across.
+            let mut folds = Vec::new();
+            for k in 0..found.regular.len() {
+                let u = found.regular[k];
+                if let Some((at, fold)) = singular::fold(map, u, &self.shape) {
+                    folds.push(fold.distance);
+                    let across = [0, 1].map(|i| 2.0 * at[i] - u[i]);
+                    complete(map, across, unit, &mut found);
+                }
+            }
+            let singular = self.singularity(map, &found, unit);
+            if singular.is_none() {
+                let nearest = found.approaches.first().map(|a| a.1);
+                let folds = folds.into_iter().filter(|d| *d > ON * unit);
+                law.reach = folds.chain(nearest).fold(law.reach, f64::min);
             }
             for u in &found.regular {
                 let term = smooth::term(map, *u, &self.shape)?;
@@ -243,14 +257,9 @@ impl SmallBandwidth {
                 law.reach = law.reach.min(term.edge);
                 edge |= term.on_edge;
                 law.roots += 1;
-                if let Some((_, fold)) = singular::fold(map, *u, &self.shape)
-                    && fold.distance > ON * unit
-                {
-                    law.reach = law.reach.min(fold.distance);
-                }
             }
-            if let Some(found) = self.singularity(map, &found, unit) {
-                leading = Some(found);
+            if singular.is_some() {
+                leading = singular;
                 law.roots += 1;
             }
         }
@@ -262,6 +271,8 @@ impl SmallBandwidth {
             law.error = 0.0;
             law.squared_order = 2.0 - leading.order;
             law.squared = leading.squared;
+            // Corrections are relative powers of the bandwidth: nothing that begins somewhere.
+            law.reach = 0.0;
             return Some(law);
         }
         if edge {

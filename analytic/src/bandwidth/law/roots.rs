@@ -17,10 +17,12 @@ pub(super) struct Found {
     pub stigmatic: bool,
 }
 
+/// An offset below this, in natural units, is none.
+const TINY: f64 = 1e-11;
 /// Newton's steps.
 const STEPS: usize = 60;
 /// Singular values below this ratio belong to a fold.
-pub(super) const FLAT: f64 = 1e-4;
+const FLAT: f64 = 1e-4;
 /// Roots nearer than this part of the domain are one.
 const SAME: f64 = 1e-6;
 
@@ -46,7 +48,7 @@ pub(super) fn find(map: &Map<'_>, cells: usize, unit: f64) -> Found {
         }
     }
     let mut found = Found::default();
-    let tiny = 1e-11 * unit;
+    let tiny = TINY * unit;
     let existing = levels.iter().filter(|v| v.is_finite());
     if existing.clone().count() > 4 && existing.clone().all(|v| *v < tiny * tiny) {
         found.stigmatic = true;
@@ -60,8 +62,16 @@ pub(super) fn find(map: &Map<'_>, cells: usize, unit: f64) -> Found {
                     (k.saturating_sub(1)..(k + 2).min(cells)).all(|a| here <= levels[b * cells + a])
                 });
             if lowest {
-                follow(map, place(node(k, l)), 0.5 / cells as f64, size, tiny, &mut found);
+                follow(map, place(node(k, l)), Some(0.5 / cells as f64), size, unit, &mut found);
             }
+        }
+    }
+    // Roots that share a valley: from everywhere.
+    let coarse = cells / 2;
+    for k in 0..coarse * coarse {
+        let t = [k % coarse, k / coarse].map(|i| (i as f64 + 0.5) / coarse as f64);
+        if map.at(place(t)).exists() {
+            follow(map, place(t), None, size, unit, &mut found);
         }
     }
     found.approaches.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -73,42 +83,64 @@ fn is_new(list: &[[f64; 2]], u: [f64; 2], size: [f64; 2]) -> bool {
         .all(|r| (0..2).any(|k| f64::abs(r[k] - u[k]) > SAME * size[k]))
 }
 
+/// Follows a start down; a nearest approach counts if `descends`.
 fn follow(
     map: &Map<'_>,
     start: [f64; 2],
-    step: f64,
+    step: Option<f64>,
     size: [f64; 2],
-    tiny: f64,
+    unit: f64,
     found: &mut Found,
 ) {
-    if record(map, newton(map, start, size, tiny), size, found) {
+    let tiny = TINY * unit;
+    let (end, level) = newton(map, start, size);
+    if level < tiny * tiny && record(map, end, size, found) {
         return;
     }
+    let Some(step) = step else { return };
     let (u, distance) = descend(map, start, step, size);
-    if distance < 1e-6 * tiny / 1e-11 && record(map, newton(map, u, size, tiny), size, found) {
+    let (end, level) = newton(map, u, size);
+    if distance < 1e-3 * unit && level < tiny * tiny && record(map, end, size, found) {
         return;
+    }
+    // A fold is approached slowly.
+    let [a, b] = singular_values(map, u, size);
+    if distance < 1e-3 * unit && b < 0.1 * a {
+        note(&mut found.degenerate, u, size);
     }
     if distance > tiny {
         found.approaches.push((u, distance));
     }
 }
 
+/// Adds a root from a start, if it is new and regular.
+pub(super) fn complete(map: &Map<'_>, start: [f64; 2], unit: f64, found: &mut Found) {
+    let size = size(map);
+    let (u, level) = newton(map, start, size);
+    if level < TINY * unit * TINY * unit {
+        record(map, u, size, found);
+    }
+}
+
+/// Degenerate roots that are apart.
+fn note(degenerate: &mut Vec<[f64; 2]>, u: [f64; 2], size: [f64; 2]) {
+    let apart = degenerate
+        .iter()
+        .all(|r| (0..2).any(|k| f64::abs(r[k] - u[k]) > 1e-2 * size[k]));
+    if apart {
+        degenerate.push(u);
+    }
+}
+
 /// Takes down a root that exists; whether there is one.
-fn record(map: &Map<'_>, root: Option<[f64; 2]>, size: [f64; 2], found: &mut Found) -> bool {
-    let Some(u) = root else { return false };
+fn record(map: &Map<'_>, u: [f64; 2], size: [f64; 2], found: &mut Found) -> bool {
     // On a border to within rounding is on it.
     if !(map.at(u).margins.iter().all(|m| *m >= -1e-10)) {
         return false;
     }
     let [a, b] = singular_values(map, u, size);
     if b < FLAT * a {
-        let apart = found
-            .degenerate
-            .iter()
-            .all(|r| (0..2).any(|k| f64::abs(r[k] - u[k]) > 1e-2 * size[k]));
-        if apart {
-            found.degenerate.push(u);
-        }
+        note(&mut found.degenerate, u, size);
     } else if is_new(&found.regular, u, size) {
         found.regular.push(u);
     }
@@ -134,19 +166,14 @@ fn singular_values(map: &Map<'_>, u: [f64; 2], size: [f64; 2]) -> [f64; 2] {
     [mean + gap, (mean - gap).max(0.0)].map(libm::sqrt)
 }
 
-/// Levenberg's damped steps to a root; `None` if there is none in reach.
-pub(super) fn newton(
-    map: &Map<'_>,
-    start: [f64; 2],
-    size: [f64; 2],
-    tiny: f64,
-) -> Option<[f64; 2]> {
+/// Levenberg's damped steps towards a root: where they end, and the squared offset there.
+fn newton(map: &Map<'_>, start: [f64; 2], size: [f64; 2]) -> ([f64; 2], f64) {
     let mut u = start;
     let mut level = map.at(u).square();
     let mut damping = 1e-10;
     for _ in 0..STEPS {
         if !level.is_finite() {
-            return None;
+            break;
         }
         let d = map.at(u).offset;
         let j = gradient(map, u, size);
@@ -170,7 +197,7 @@ pub(super) fn newton(
             break;
         }
     }
-    (level < tiny * tiny).then_some(u)
+    (u, level)
 }
 
 /// Directions of a look around.
