@@ -105,7 +105,11 @@ mod tests {
             };
             // Midpoints in √t, which takes the singular powers.
             let n = 20_000;
-            let end = if kernel == Kernel::VonMisesFisher { 2.4 } else { 1.0 };
+            let end = if kernel == Kernel::VonMisesFisher {
+                2.4
+            } else {
+                1.0
+            };
             for power in [1, 2] {
                 for a in [-0.5, 0.0, 1.0, 2.0, 3.0] {
                     let sum: f64 = (0..n)
@@ -116,7 +120,10 @@ mod tests {
                         })
                         .sum();
                     let exact = s.radial(power, a);
-                    assert!((sum / exact - 1.0).abs() < 1e-6, "{kernel} {power} {a} {sum} {exact}");
+                    assert!(
+                        (sum / exact - 1.0).abs() < 1e-6,
+                        "{kernel} {power} {a} {sum} {exact}"
+                    );
                 }
             }
             assert!((s.whole(1) - 1.0).abs() < 1e-14);

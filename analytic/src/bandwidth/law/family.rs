@@ -77,6 +77,21 @@ impl Map<'_> {
         }
     }
 
+    /// Whether a linked distance vanishes somewhere on the border of the surface.
+    pub fn has_foot(&self) -> bool {
+        let Map::Linked(_, distances) = self else {
+            return false;
+        };
+        let [a, b] = self.domain();
+        (0..=32).any(|k| {
+            let t = f64::from(k) / 32.0;
+            let [x, y] = [a, b].map(|[low, high]| low + (high - low) * t);
+            [[x, b[0]], [x, b[1]], [a[0], y], [a[1], y]]
+                .into_iter()
+                .any(|u| f64::abs(distances.node(u).distance) < 1e-9)
+        })
+    }
+
     /// The path of a pair of parameters, which may be outside the rectangle where the surface has a continuation.
     pub fn at(&self, u: [f64; 2]) -> Sample {
         let node = match self {
@@ -125,7 +140,9 @@ impl Family {
         let unknown = || InvalidParameter {
             key: "kind".to_owned(),
             found: entry.kind.name().to_owned(),
-            allowed: format!("a kind with an expectation at finite bandwidth for the technique {technique}"),
+            allowed: format!(
+                "a kind with an expectation at finite bandwidth for the technique {technique}"
+            ),
         };
         let floor = entry.kind.floor().ok_or_else(unknown)?;
         let receiver = Receiver {
@@ -193,7 +210,12 @@ impl Family {
         technique: Technique,
         kernel: Kernel,
     ) -> Option<Self> {
-        Self::unbounded(scenes::sphere(mirror)?, mirror.receiver_z, technique, kernel)
+        Self::unbounded(
+            scenes::sphere(mirror)?,
+            mirror.receiver_z,
+            technique,
+            kernel,
+        )
     }
 
     /// The light that a flat interface refracts onto an unbounded receiver.

@@ -100,7 +100,11 @@ impl Jet {
     }
 
     pub fn is_finite(&self) -> bool {
-        self.derivatives.iter().flatten().flatten().all(|v| v.is_finite())
+        self.derivatives
+            .iter()
+            .flatten()
+            .flatten()
+            .all(|v| v.is_finite())
     }
 
     /// The value and the first derivatives of the offset.
@@ -120,7 +124,11 @@ impl Jet {
 
     /// Second derivative of the offset along two directions.
     pub fn second(&self, a: [f64; 2], b: [f64; 2]) -> Vector {
-        let (xx, xy, yy) = (self.component(2, 0), self.component(1, 1), self.component(0, 2));
+        let (xx, xy, yy) = (
+            self.component(2, 0),
+            self.component(1, 1),
+            self.component(0, 2),
+        );
         core::array::from_fn(|c| {
             a[0] * b[0] * xx[c] + (a[0] * b[1] + a[1] * b[0]) * xy[c] + a[1] * b[1] * yy[c]
         })

@@ -34,9 +34,7 @@ pub(super) fn size(map: &Map<'_>) -> [f64; 2] {
 /// A look at `cells`² parameters, each local minimum of the offset followed down. `unit`: the natural size of an offset.
 pub(super) fn find(map: &Map<'_>, cells: usize, unit: f64) -> Found {
     let (domain, size) = (map.domain(), size(map));
-    let node = |k: usize, l: usize| {
-        [k, l].map(|i| (i as f64 + 0.5) / cells as f64)
-    };
+    let node = |k: usize, l: usize| [k, l].map(|i| (i as f64 + 0.5) / cells as f64);
     let place = |t: [f64; 2]| [0, 1].map(|i| domain[i][0] + t[i] * size[i]);
     let mut levels = vec![f64::INFINITY; cells * cells];
     for l in 0..cells {
@@ -62,7 +60,14 @@ pub(super) fn find(map: &Map<'_>, cells: usize, unit: f64) -> Found {
                     (k.saturating_sub(1)..(k + 2).min(cells)).all(|a| here <= levels[b * cells + a])
                 });
             if lowest {
-                follow(map, place(node(k, l)), Some(0.5 / cells as f64), size, unit, &mut found);
+                follow(
+                    map,
+                    place(node(k, l)),
+                    Some(0.5 / cells as f64),
+                    size,
+                    unit,
+                    &mut found,
+                );
             }
         }
     }
@@ -213,12 +218,12 @@ fn descend(map: &Map<'_>, start: [f64; 2], step: f64, size: [f64; 2]) -> ([f64; 
         turn += 2.399_963_229_728_653;
         let mut next = None;
         for k in 0..AROUND {
-            let (s, c) = libm::sincos(turn + core::f64::consts::TAU * f64::from(k) / f64::from(AROUND));
+            let (s, c) =
+                libm::sincos(turn + core::f64::consts::TAU * f64::from(k) / f64::from(AROUND));
             let e = [c, s];
             // On the border of the rectangle it slides.
-            let v = [0, 1].map(|k| {
-                (u[k] + step * e[k] * size[k]).clamp(domain[k][0], domain[k][1])
-            });
+            let v =
+                [0, 1].map(|k| (u[k] + step * e[k] * size[k]).clamp(domain[k][0], domain[k][1]));
             let sample: Sample = map.at(v);
             if sample.exists() && sample.square() < best {
                 (next, best) = (Some(v), sample.square());

@@ -71,7 +71,12 @@ fn determinant(jet: &Jet, normal: &Vector) -> (f64, [f64; 2]) {
 fn normal(map: &Map<'_>, u: [f64; 2], size: [f64; 2], h: f64) -> Option<Vector> {
     for k in 0..8 {
         let (s, c) = libm::sincos(0.3 + TAU * f64::from(k) / 8.0);
-        let jet = Jet::new(map, [u[0] + 2.0 * h * c * size[0], u[1] + 2.0 * h * s * size[1]], size, h);
+        let jet = Jet::new(
+            map,
+            [u[0] + 2.0 * h * c * size[0], u[1] + 2.0 * h * s * size[1]],
+            size,
+            h,
+        );
         let [p, q] = jet.jacobian();
         let n = cross(&p, &q);
         let length = libm::sqrt(dot(&n, &n));
@@ -129,8 +134,12 @@ pub(super) fn fold(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f6
     let u = solve(start, size, |u| {
         let jet = Jet::new(map, u, size, h);
         let f = frame(&jet);
-        jet.is_finite()
-            .then(|| [determinant(&jet, &n).0 / (f.sigma * f.sigma), dot(&f.e, &jet.offset()) / f.sigma])
+        jet.is_finite().then(|| {
+            [
+                determinant(&jet, &n).0 / (f.sigma * f.sigma),
+                dot(&f.e, &jet.offset()) / f.sigma,
+            ]
+        })
     })?;
     let here = map.at(u);
     if !here.exists() {
@@ -165,7 +174,11 @@ pub(super) fn cusp(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f6
         let (value, gradient) = determinant(&jet, &n);
         // A null direction has no sign of its own.
         let v = f.v[1];
-        let sign = if v[0] * reference[0] + v[1] * reference[1] < 0.0 { -1.0 } else { 1.0 };
+        let sign = if v[0] * reference[0] + v[1] * reference[1] < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         let slope = sign * (v[0] * gradient[0] + v[1] * gradient[1]);
         let scale = f.sigma * f.sigma;
         jet.is_finite().then_some([value / scale, slope / scale])
@@ -203,7 +216,12 @@ fn step(map: &Map<'_>, u: [f64; 2]) -> Option<f64> {
     let mut coarse = Jet::new(map, u, size, h);
     for _ in 0..6 {
         let fine = Jet::new(map, u, size, h / 3.0);
-        let bend = |j: &Jet| j.second([1.0, 0.0], [0.0, 1.0]).map(|c| 1.0 + f64::abs(c)).iter().sum::<f64>();
+        let bend = |j: &Jet| {
+            j.second([1.0, 0.0], [0.0, 1.0])
+                .map(|c| 1.0 + f64::abs(c))
+                .iter()
+                .sum::<f64>()
+        };
         let agrees = f64::abs(bend(&fine) - bend(&coarse)) < 1e-5 * bend(&fine);
         if coarse.is_finite() && agrees {
             return Some(h);
@@ -228,7 +246,8 @@ pub(super) fn line(map: &Map<'_>, roots: &[[f64; 2]], shape: &Shape) -> Option<L
         let mut sum = [0.0; 2];
         for k in 0..n {
             let (s, c) = libm::sincos(TAU * f64::from(k) / f64::from(n));
-            let at = |rho: f64| map.at([middle[0] + rho * c * size[0], middle[1] + rho * s * size[1]]);
+            let at =
+                |rho: f64| map.at([middle[0] + rho * c * size[0], middle[1] + rho * s * size[1]]);
             let slope = |rho: f64| -> Vector {
                 const D: f64 = 1e-6;
                 let (a, b) = (at(rho - D).offset, at(rho + D).offset);

@@ -43,8 +43,8 @@ pub(super) struct Term {
     pub second: [f64; 2],
     /// Second moment times α².
     pub squared: f64,
-    /// Offset to the nearest edge, to first order.
-    pub edge: f64,
+    /// Offset to the nearest edge, to first order, and to where the map folds on a ray if its slope 1 + 2at went on: 1/(4|a|).
+    pub reach: f64,
     /// Whether an edge passes through it.
     pub on_edge: bool,
 }
@@ -84,8 +84,17 @@ impl Local {
         [l00 * c, l10 * c + l11 * s]
     }
 
-    /// c₁ − 3a and Q on a ray.
-    fn ray(&self, w: f64) -> [f64; 2] {
+    /// The smallest 1/(4|a|) over all rays.
+    fn fold(&self) -> f64 {
+        const N: u32 = 32;
+        let most = (0..N)
+            .map(|k| f64::abs(self.ray(TAU * f64::from(k) / f64::from(N))[2]))
+            .fold(0.0, f64::max);
+        0.25 / most
+    }
+
+    /// c₁ − 3a, Q and a on a ray.
+    fn ray(&self, w: f64) -> [f64; 3] {
         let e = self.along(w);
         let [_, d1, d2, d3] = self.jet.terms(e);
         let [w0, w1, w2] = self.jet.density(e);
@@ -93,10 +102,7 @@ impl Local {
         let (c1, c2) = (w1 / w0, w2 / w0);
         let a = 0.5 * a1;
         let b = 0.5 * a2 - 0.125 * a1 * a1 + self.jet.curvature / 24.0;
-        [
-            c1 - 3.0 * a,
-            10.0 * a * a - 4.0 * b - 4.0 * a * c1 + c2,
-        ]
+        [c1 - 3.0 * a, 10.0 * a * a - 4.0 * b - 4.0 * a * c1 + c2, a]
     }
 
     fn kappa(&self) -> f64 {
@@ -134,7 +140,7 @@ pub(super) fn term(map: &Map<'_>, u: [f64; 2], shape: &Shape) -> Option<Term> {
         limit: value,
         second: [value * kappa, value * error].map(|v| v * shape.second()),
         squared: here.density[1] * local.area * shape.whole(2),
-        edge: f64::INFINITY,
+        reach: local.fold(),
         ..Term::default()
     };
     // Margins by their gradients in the space of offsets.
@@ -149,8 +155,8 @@ pub(super) fn term(map: &Map<'_>, u: [f64; 2], shape: &Shape) -> Option<Term> {
         let distance = here.margins[m] / steep;
         if distance < 1e-8 * reach_unit(&local, map) {
             edges.push((m, libm::atan2(y, x), steep));
-        } else if distance < term.edge {
-            term.edge = distance;
+        } else if distance < term.reach {
+            term.reach = distance;
         }
     }
     if edges.is_empty() {
@@ -191,7 +197,7 @@ pub(super) fn term(map: &Map<'_>, u: [f64; 2], shape: &Shape) -> Option<Term> {
         first: value * odd * shape.radial(1, 2.0),
         second: [0.0; 2],
         squared: term.squared * share,
-        edge: term.edge,
+        reach: term.reach,
         on_edge: true,
     })
 }
@@ -207,7 +213,13 @@ fn margin_terms(map: &Map<'_>, u: [f64; 2], local: &Local, m: usize, w: f64) -> 
     let (size, e) = (size(map), local.along(w));
     // A step that is a ten-thousandth of the domain.
     let h = 1e-4 / libm::hypot(e[0], e[1]);
-    let at = |t: f64| map.at([0, 1].map(|k| u[k] + t * h * e[k] * size[k])).margins[m];
+    let at = |t: f64| {
+        map.at([0, 1].map(|k| u[k] + t * h * e[k] * size[k]))
+            .margins[m]
+    };
     let (low, here, high) = (at(-1.0), at(0.0), at(1.0));
-    [(high - low) / (2.0 * h), (high - 2.0 * here + low) / (2.0 * h * h)]
+    [
+        (high - low) / (2.0 * h),
+        (high - 2.0 * here + low) / (2.0 * h * h),
+    ]
 }

@@ -63,7 +63,12 @@ fn minimise([a, b]: [f64; 2], f: impl Fn(f64) -> f64) -> (f64, bool) {
 }
 
 /// The error of one bandwidth or of a schedule at several points.
-fn result(curves: &[&Curve], bandwidth: f64, at_largest: bool, f: impl Fn(&Curve) -> Error) -> Best {
+fn result(
+    curves: &[&Curve],
+    bandwidth: f64,
+    at_largest: bool,
+    f: impl Fn(&Curve) -> Error,
+) -> Best {
     let n = curves.len() as f64;
     let (mut bias, mut variance) = (0.0, 0.0);
     for c in curves {
@@ -108,7 +113,9 @@ pub fn fixed(curves: &[&Curve], paths: f64) -> Option<Best> {
 
 /// Samples k = 1 … `paths` at the bandwidths α₀ k^(−`decay`), plain mean.
 pub fn progressive(curves: &[&Curve], paths: u64, decay: f64) -> Option<Best> {
-    search(curves, paths as f64, |c, alpha| of_schedule(c, alpha, decay, paths))
+    search(curves, paths as f64, |c, alpha| {
+        of_schedule(c, alpha, decay, paths)
+    })
 }
 
 /// Bias and variance of the plain mean of a power schedule.

@@ -81,7 +81,8 @@ impl Curve {
             });
             let smooth = (0..2).all(|i| {
                 let size = coefficients.iter().map(|c| f64::abs(c[i])).sum::<f64>();
-                let tail = f64::abs(coefficients[NODES - 1][i]) + f64::abs(coefficients[NODES - 2][i]);
+                let tail =
+                    f64::abs(coefficients[NODES - 1][i]) + f64::abs(coefficients[NODES - 2][i]);
                 tail <= SMALL * size
             });
             if smooth || depth == DEEPEST {

@@ -70,7 +70,14 @@ pub(super) fn probability(
     };
     for caustic in &class.caustics {
         let mut connect = |link| {
-            let c = Connection::new(caustic, x, family.receiver, family.technique, &profile, link);
+            let c = Connection::new(
+                caustic,
+                x,
+                family.receiver,
+                family.technique,
+                &profile,
+                link,
+            );
             add(integrate(&Sampled(c), tolerance));
         };
         if family.technique != Technique::Linked {
@@ -113,7 +120,10 @@ pub(super) fn preview(
         return None;
     }
     // p is nearly α² p(1): steps of that kind inside a bracket, in ln α.
-    let (mut low, mut high) = (libm::log(crate::bandwidth::SMALLEST_BANDWIDTH), libm::log(high));
+    let (mut low, mut high) = (
+        libm::log(crate::bandwidth::SMALLEST_BANDWIDTH),
+        libm::log(high),
+    );
     let mut t = high;
     for _ in 0..60 {
         let p = probability(libm::exp(t))?;
@@ -127,8 +137,16 @@ pub(super) fn preview(
         }
         let guess = t + 0.5 * libm::log(wanted / p);
         // A little beyond, so that both ends of the bracket close in.
-        let next = if p >= wanted { guess - 2e-7 } else { guess + 2e-7 };
-        t = if next > low && next < high { next } else { 0.5 * (low + high) };
+        let next = if p >= wanted {
+            guess - 2e-7
+        } else {
+            guess + 2e-7
+        };
+        t = if next > low && next < high {
+            next
+        } else {
+            0.5 * (low + high)
+        };
     }
     Some(libm::exp(high))
 }

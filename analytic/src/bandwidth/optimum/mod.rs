@@ -53,7 +53,10 @@ impl Study {
         beam_area: f64,
     ) -> Result<Self, InvalidParameter> {
         let laws = SmallBandwidth::new(entry, technique, kernel, convention, beam_area)?;
-        let width = entry.kind.floor().map_or(1.0, |f| f.half_width[0].max(f.half_width[1]));
+        let width = entry
+            .kind
+            .floor()
+            .map_or(1.0, |f| f.half_width[0].max(f.half_width[1]));
         Ok(Study {
             entry: entry.clone(),
             technique,
@@ -98,7 +101,10 @@ impl Study {
             bandwidths: &[bandwidth],
         };
         let e = EntryExpectation::new(&self.entry, estimator, self.beam_area)?;
-        Ok(e.at(x, y, tolerance).get(class).copied().unwrap_or_default())
+        Ok(e.at(x, y, tolerance)
+            .get(class)
+            .copied()
+            .unwrap_or_default())
     }
 
     /// Bias and variance against the bandwidth; `None` where the truth is not finite (on a caustic), jumps (on an edge), or where there
@@ -125,10 +131,15 @@ impl Study {
             _ => return None,
         };
         let low = low.max(super::SMALLEST_BANDWIDTH);
-        Some(Curve::new(truth, law, [low, self.largest.max(1.001 * low)], |alpha| {
-            let m = self.moments(class, x, alpha.min(self.largest), TOLERANCE);
-            m.map_or([f64::NAN; 2], |m| [m.mean.value, m.second_moment.value])
-        }))
+        Some(Curve::new(
+            truth,
+            law,
+            [low, self.largest.max(1.001 * low)],
+            |alpha| {
+                let m = self.moments(class, x, alpha.min(self.largest), TOLERANCE);
+                m.map_or([f64::NAN; 2], |m| [m.mean.value, m.second_moment.value])
+            },
+        ))
     }
 
     /// Probability that one sample is not zero; `None` for a kernel without an end and for light whose weights are not known.
