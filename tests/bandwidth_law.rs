@@ -444,3 +444,84 @@ fn extrapolated_samples_have_the_predicted_moments() {
         "{second} {exact:?}"
     );
 }
+
+fn command(arguments: &[&str]) -> std::process::Output {
+    std::process::Command::new(env!("CARGO_BIN_EXE_nephroid"))
+        .arg("bandwidth")
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_command_answers_and_refuses() {
+    let output = command(&["mirror-wall", "--paths", "1e6", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["schema"], "nephroid-bandwidth/1");
+    let probes = answer["probes"].as_array().unwrap();
+    assert!(!probes.is_empty());
+    for probe in probes {
+        assert_eq!(probe["class"], "LSDE");
+        assert_eq!(probe["law"]["place"], "smooth");
+        let best = &probe["best"];
+        let [bias, deviation, rmse] =
+            ["bias", "standard_deviation", "rmse"].map(|k| best[k].as_f64().unwrap());
+        assert!((libm::hypot(bias, deviation) / rmse - 1.0).abs() < 1e-12);
+        // At the optimum of the law the variance is p/d·2 = 2 squared biases.
+        assert!(
+            (deviation * deviation / (bias * bias) - 2.0).abs() < 0.5,
+            "{probe}"
+        );
+        assert!((probe["lambda"].as_f64().unwrap() - 1.0 / 6.0).abs() < 1e-15);
+        assert!(probe["preview"].as_f64().unwrap() < best["bandwidth"].as_f64().unwrap());
+    }
+    assert_eq!(answer["picture"][0]["class"], "LSDE");
+
+    let text = command(&["pool", "--paths", "30000", "--technique", "light"]);
+    assert_eq!(text.status.code(), Some(0), "{text:?}");
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(
+        text.contains("preview") && text.contains("picture"),
+        "{text}"
+    );
+
+    for (arguments, names) in [
+        (&["mirror-wall", "--paths", "0"][..], "whole number"),
+        (&["nowhere", "--paths", "10"], "nowhere"),
+        (
+            &["mirror-wall", "--paths", "10", "--kernel", "disc"],
+            "disc",
+        ),
+        (
+            &["mirror-wall", "--paths", "10", "--technique", "backwards"],
+            "backwards",
+        ),
+        (
+            &["mirror-wall", "--paths", "10", "--epsilon", "0"],
+            "epsilon",
+        ),
+        (
+            &["mirror-wall", "--paths", "10", "--points", "no.csv"],
+            "no.csv",
+        ),
+        (
+            &["floor", "--paths", "10", "--beam-area", "-1"],
+            "beam-area",
+        ),
+        (
+            &["corner", "--paths", "10", "--technique", "camera"],
+            "technique",
+        ),
+        (&["furnace", "--paths", "10"], "floor"),
+    ] {
+        let output = command(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?} {output:?}");
+        assert!(
+            String::from_utf8_lossy(&output.stderr).contains(names),
+            "{arguments:?} {output:?}"
+        );
+    }
+    // Nothing is regularized there.
+    assert_eq!(command(&["floor", "--paths", "10"]).status.code(), Some(4));
+}

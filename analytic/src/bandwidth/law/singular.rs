@@ -131,13 +131,20 @@ pub(super) fn fold(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f6
     let size = size(map);
     let h = step(map, start)?;
     let n = normal(map, start, size, h)?;
+    let reference = frame(&Jet::new(map, start, size, h)).e;
     let u = solve(start, size, |u| {
         let jet = Jet::new(map, u, size, h);
         let f = frame(&jet);
+        // A singular direction has no sign of its own.
+        let sign = if dot(&f.e, &reference) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         jet.is_finite().then(|| {
             [
                 determinant(&jet, &n).0 / (f.sigma * f.sigma),
-                dot(&f.e, &jet.offset()) / f.sigma,
+                sign * dot(&f.e, &jet.offset()) / f.sigma,
             ]
         })
     })?;
