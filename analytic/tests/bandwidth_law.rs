@@ -256,7 +256,7 @@ mod random {
             half_width: [30.0; 2],
             albedo: 0.5,
         };
-        let camera = ([0.0, -2.0, 2.0], [0.0; 3], 40.0);
+        let camera = ([3.0 * normal[0], 3.0 * normal[1], 2.0], [0.0; 3], 40.0);
         mirror_entry(light, 2.9, floor, mirror, camera, 16)
     }
 
