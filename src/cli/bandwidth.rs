@@ -9,8 +9,8 @@ use nephroid_analytic::camera::Film;
 use nephroid_analytic::entries::FloorTruth;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 use rayon::prelude::*;
-use serde_json::{Value, json};
 
+use super::bandwidth_answer::{as_json, as_text};
 use crate::error::Error;
 use crate::{entry, exit};
 
@@ -27,7 +27,7 @@ pub struct Args {
     scene: String,
     /// Number of paths that reach for each point.
     #[arg(long, value_name = "N", value_parser = super::count)]
-    paths: u64,
+    pub(super) paths: u64,
     /// camera, light, symmetric, merge or linked. Default: camera, or merge for chains of interactions.
     #[arg(long, value_name = "T")]
     technique: Option<String>,
@@ -36,39 +36,39 @@ pub struct Args {
     kernel: Option<String>,
     /// How a linked bandwidth atan(r/d) finds d: exact, vertex or light.
     #[arg(long, value_name = "C", default_value = "exact")]
-    convention: String,
+    pub(super) convention: String,
     /// Floor points: a CSV file with the header x,y,z. Default: three lit points of the picture.
     #[arg(long, value_name = "FILE.csv")]
     points: Option<PathBuf>,
     /// Probability of a miss that a preview may have, 1e-12 to 0.5.
     #[arg(long, value_name = "P", default_value_t = 1e-3)]
-    epsilon: f64,
+    pub(super) epsilon: f64,
     /// Cross-section over which the photons of parallel light are uniform, in square metres.
     #[arg(long, value_name = "A", default_value_t = 1.0)]
-    beam_area: f64,
+    pub(super) beam_area: f64,
     /// Print JSON.
     #[arg(long)]
     json: bool,
 }
 
 /// What is told of a point and a class.
-struct Row {
-    point: [f64; 2],
-    law: Law,
-    truth: Option<f64>,
-    curve: Option<Curve>,
-    fixed: Option<Best>,
-    progressive: Option<Best>,
-    decay: Option<f64>,
-    preview: Option<f64>,
+pub(super) struct Row {
+    pub point: [f64; 2],
+    pub law: Law,
+    pub truth: Option<f64>,
+    pub curve: Option<Curve>,
+    pub fixed: Option<Best>,
+    pub progressive: Option<Best>,
+    pub decay: Option<f64>,
+    pub preview: Option<f64>,
 }
 
 /// What is told of a class over the picture.
-struct Whole {
-    class: String,
-    points: usize,
-    fixed: Option<Best>,
-    progressive: Option<Best>,
+pub(super) struct Whole {
+    pub class: String,
+    pub points: usize,
+    pub fixed: Option<Best>,
+    pub progressive: Option<Best>,
 }
 
 /// Runs the command.
@@ -276,175 +276,4 @@ fn whole(args: &Args, study: &Study, grid: &[[f64; 2]]) -> Vec<Whole> {
             })
         })
         .collect()
-}
-
-fn number(v: Option<f64>) -> String {
-    v.map_or("-".to_owned(), |v| format!("{v:.4e}"))
-}
-
-fn as_text(
-    args: &Args,
-    (technique, kernel): (Technique, Kernel),
-    rows: &[Row],
-    wholes: &[Whole],
-) -> String {
-    let unit = if technique.bandwidth_is_angle() {
-        "rad"
-    } else {
-        "m"
-    };
-    let mut lines = vec![
-        format!(
-            "{technique}, {kernel}, {} paths per point; bandwidths in {unit}, irradiances in W/m²",
-            args.paths
-        ),
-        format!(
-            "{:<8} {:>8} {:>8} {:<11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>7} {:>11} {:>11} {:>11}",
-            "class",
-            "x",
-            "y",
-            "place",
-            "E",
-            "best",
-            "bias",
-            "sd",
-            "rmse",
-            "lambda",
-            "first",
-            "rmse",
-            "preview"
-        ),
-    ];
-    for r in rows {
-        let f = |g: fn(&Best) -> f64| r.fixed.as_ref().map(g);
-        let p = |g: fn(&Best) -> f64| r.progressive.as_ref().map(g);
-        lines.push(format!(
-            "{:<8} {:>8.4} {:>8.4} {:<11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>7} {:>11} {:>11} {:>11}",
-            r.law.class.to_string(),
-            r.point[0],
-            r.point[1],
-            r.law.place.name(),
-            number(r.truth),
-            number(f(|b| b.bandwidth)),
-            number(f(|b| b.bias)),
-            number(f(|b| b.deviation)),
-            number(f(|b| b.rmse)),
-            r.decay.map_or("-".to_owned(), |d| format!("{d:.4}")),
-            number(p(|b| b.bandwidth)),
-            number(p(|b| b.rmse)),
-            number(r.preview),
-        ));
-    }
-    for w in wholes {
-        let f = |g: fn(&Best) -> f64| w.fixed.as_ref().map(g);
-        let p = |g: fn(&Best) -> f64| w.progressive.as_ref().map(g);
-        lines.push(format!(
-            "{:<8} {:>17} {:<11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>7} {:>11} {:>11}",
-            w.class,
-            format!("{} points", w.points),
-            "picture",
-            "",
-            number(f(|b| b.bandwidth)),
-            number(f(|b| b.bias)),
-            number(f(|b| b.deviation)),
-            number(f(|b| b.rmse)),
-            "0.1667",
-            number(p(|b| b.bandwidth)),
-            number(p(|b| b.rmse)),
-        ));
-    }
-    for r in rows.iter().filter(|r| r.fixed.is_none()) {
-        lines.push(format!(
-            "({}, {}) {}: {}",
-            r.point[0],
-            r.point[1],
-            r.law.class,
-            match r.law.place {
-                Place::Dark => format!("dark: exactly 0 below {:.4e} {unit}", r.law.reach),
-                Place::Edge =>
-                    "on an edge: the limit is not the irradiance of either side".to_owned(),
-                _ => format!(
-                    "on a caustic: the mean grows like {:.4e} alpha^{:.4}",
-                    r.law.coefficient,
-                    r.law.order.unwrap_or(0.0)
-                ),
-            }
-        ));
-    }
-    lines.push(format!(
-        "MSE of the best at smooth points falls like N^(-2/3); preview: all paths miss with probability {:e} at most",
-        args.epsilon
-    ));
-    lines.join("\n")
-}
-
-fn best_json(b: Option<&Best>) -> Value {
-    b.map_or(Value::Null, |b| {
-        json!({
-            "bandwidth": b.bandwidth,
-            "bias": b.bias,
-            "standard_deviation": b.deviation,
-            "rmse": b.rmse,
-            "at_largest": b.at_largest,
-        })
-    })
-}
-
-fn finite(v: f64) -> Option<f64> {
-    Some(v).filter(|v| v.is_finite())
-}
-
-fn as_json(
-    args: &Args,
-    entry: &Entry,
-    (technique, kernel): (Technique, Kernel),
-    rows: &[Row],
-    wholes: &[Whole],
-) -> Value {
-    let row = |r: &Row| {
-        let l = &r.law;
-        json!({
-            "class": l.class.to_string(),
-            "x": r.point[0],
-            "y": r.point[1],
-            "E": r.truth,
-            "law": {
-                "place": l.place.name(),
-                "limit": l.limit,
-                "order": l.order,
-                "coefficient": l.coefficient,
-                "second_moment_order": -l.squared_order,
-                "second_moment_coefficient": l.squared,
-                "reach": finite(l.reach),
-                "roots": l.roots,
-            },
-            "best": best_json(r.fixed.as_ref()),
-            "lambda": r.decay,
-            "progressive": best_json(r.progressive.as_ref()),
-            "mse_rate": r.decay.and_then(|d| Some(-2.0 * l.order? * d)),
-            "preview": r.preview,
-            "largest_bandwidth": r.curve.as_ref().map(Curve::high),
-        })
-    };
-    let whole = |w: &Whole| {
-        json!({
-            "class": w.class,
-            "points": w.points,
-            "best": best_json(w.fixed.as_ref()),
-            "lambda": 1.0 / 6.0,
-            "progressive": best_json(w.progressive.as_ref()),
-        })
-    };
-    json!({
-        "schema": "nephroid-bandwidth/1",
-        "scene": entry.name,
-        "technique": technique.name(),
-        "kernel": kernel.name(),
-        "convention": (technique == Technique::Linked).then_some(&args.convention),
-        "beam_area": args.beam_area,
-        "paths": args.paths,
-        "epsilon": args.epsilon,
-        "probes": rows.iter().map(row).collect::<Vec<_>>(),
-        "picture": wholes.iter().map(whole).collect::<Vec<_>>(),
-    })
 }

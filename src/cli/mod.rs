@@ -1,6 +1,7 @@
 //! The command line: one file per command, each a thin layer over the library.
 
 mod bandwidth;
+mod bandwidth_answer;
 mod bias;
 mod converge;
 mod evaluate;

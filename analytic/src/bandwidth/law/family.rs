@@ -66,14 +66,15 @@ pub(super) enum Map<'a> {
     Connected(Connection<'a>),
     Linked(Connection<'a>, Box<Connection<'a>>),
     Merged(Connection<'a>),
-    Bundled(Merging<'a>),
+    /// With whether the weights of its rays are known.
+    Bundled(Merging<'a>, bool),
 }
 
 impl Map<'_> {
     pub fn domain(&self) -> [[f64; 2]; 2] {
         match self {
             Map::Connected(c) | Map::Linked(c, _) | Map::Merged(c) => c.domain(),
-            Map::Bundled(m) => m.domain(),
+            Map::Bundled(m, _) => m.domain(),
         }
     }
 
@@ -96,7 +97,7 @@ impl Map<'_> {
     pub fn at(&self, u: [f64; 2]) -> Sample {
         let node = match self {
             Map::Connected(c) | Map::Linked(c, _) | Map::Merged(c) => c.node(u),
-            Map::Bundled(m) => m.node(u),
+            Map::Bundled(m, _) => m.node(u),
         };
         let mut margins = [1.0; LIMITS];
         margins[..MARGINS].copy_from_slice(&node.margins);
@@ -107,7 +108,13 @@ impl Map<'_> {
         let (mut offset, mut density, mut curvature) = (node.deflection, node.density, 1.0);
         match self {
             Map::Connected(_) => {}
-            Map::Merged(_) | Map::Bundled(_) => curvature = 0.0,
+            Map::Merged(_) => curvature = 0.0,
+            Map::Bundled(_, weighted) => {
+                curvature = 0.0;
+                if !weighted {
+                    density[1] = f64::NAN;
+                }
+            }
             Map::Linked(_, distances) => {
                 // φ = d² f(dg/r)/r² to leading order.
                 let d = distances.node(u).distance;
@@ -273,13 +280,9 @@ impl Family {
             technique => Map::Connected(connect(caustic, technique, None)),
         });
         let merged = class.bundles.iter().map(|bundle| {
-            Map::Bundled(Merging::new(
-                bundle,
-                self.receiver,
-                x,
-                &self.profile,
-                class.photons,
-            ))
+            let m = Merging::new(bundle, self.receiver, x, &self.profile, class.photons);
+            let weighted = m.is_weighted();
+            Map::Bundled(m, weighted)
         });
         connected.chain(merged).collect()
     }

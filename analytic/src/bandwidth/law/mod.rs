@@ -316,7 +316,7 @@ impl SmallBandwidth {
         }
         found.degenerate.iter().find_map(|u| {
             let on = |l: &Leading, part: f64| l.distance <= part * unit;
-            let cusp = singular::cusp(map, *u, &self.shape).filter(|(_, l)| on(l, 1e-6));
+            let cusp = singular::cusp(map, *u, &self.shape).filter(|(_, l)| on(l, 1e-5));
             let fold = singular::fold(map, *u, &self.shape).filter(|(_, l)| on(l, ON));
             match (cusp, fold) {
                 (Some((_, l)), _) => Some((Place::Cusp, l)),

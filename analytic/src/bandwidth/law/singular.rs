@@ -91,19 +91,20 @@ fn normal(map: &Map<'_>, u: [f64; 2], size: [f64; 2], h: f64) -> Option<Vector> 
 fn solve(
     start: [f64; 2],
     size: [f64; 2],
+    // Step of the differences, and the part of the domain to which they find a root.
+    [d, close]: [f64; 2],
     equations: impl Fn([f64; 2]) -> Option<[f64; 2]>,
 ) -> Option<[f64; 2]> {
     let mut u = start;
     let mut last = f64::INFINITY;
     for _ in 0..STEPS {
         let f = equations(u)?;
-        const D: f64 = 1e-5;
         let column = |k: usize| -> Option<[f64; 2]> {
             let (mut low, mut high) = (u, u);
-            low[k] -= D * size[k];
-            high[k] += D * size[k];
+            low[k] -= d * size[k];
+            high[k] += d * size[k];
             let (a, b) = (equations(low)?, equations(high)?);
-            Some([0, 1].map(|i| (b[i] - a[i]) / (2.0 * D)))
+            Some([0, 1].map(|i| (b[i] - a[i]) / (2.0 * d)))
         };
         let (p, q) = (column(0)?, column(1)?);
         let det = p[0] * q[1] - p[1] * q[0];
@@ -116,14 +117,14 @@ fn solve(
             return None;
         }
         // Rounding of the differences ends it.
-        if length < 1e-12 || (length < 1e-7 && length >= last) {
+        if length < 1e-12 || (length < close && length >= last) {
             return Some(u);
         }
         let scale = (0.05 / length).min(1.0);
         u = [0, 1].map(|k| u[k] + scale * step[k] * size[k]);
         last = length;
     }
-    (last < 1e-7).then_some(u)
+    (last < close).then_some(u)
 }
 
 /// The fold nearest to a path, and what it would give to a point on it.
@@ -132,7 +133,7 @@ pub(super) fn fold(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f6
     let h = step(map, start)?;
     let n = normal(map, start, size, h)?;
     let reference = frame(&Jet::new(map, start, size, h)).e;
-    let u = solve(start, size, |u| {
+    let u = solve(start, size, [1e-5, 1e-7], |u| {
         let jet = Jet::new(map, u, size, h);
         let f = frame(&jet);
         // A singular direction has no sign of its own.
@@ -175,7 +176,7 @@ pub(super) fn cusp(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f6
     let h = step(map, start)?;
     let n = normal(map, start, size, h)?;
     let reference = frame(&Jet::new(map, start, size, h)).v[1];
-    let u = solve(start, size, |u| {
+    let u = solve(start, size, [3e-4, 1e-5], |u| {
         let jet = Jet::new(map, u, size, h);
         let f = frame(&jet);
         let (value, gradient) = determinant(&jet, &n);

@@ -132,7 +132,9 @@ pub fn of_schedule(curve: &Curve, first: f64, decay: f64, paths: u64) -> Error {
 }
 
 fn search(curves: &[&Curve], paths: f64, error: impl Fn(&Curve, f64) -> Error) -> Option<Best> {
-    if curves.iter().all(|c| c.law().roots == 0) {
+    // Without weights there is no variance.
+    let unknown = curves.iter().any(|c| c.law().squared.is_nan());
+    if unknown || curves.iter().all(|c| c.law().roots == 0) {
         return None;
     }
     let total = |t: f64| {

@@ -36,12 +36,12 @@ pub struct Study {
 }
 
 /// Relative tolerance of the expectations.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-7;
 /// Below this bandwidth, in radians or metres, or a tenth of the law's reach, the law is used.
 const NARROW: f64 = 2e-3;
 
 impl Study {
-    /// Arguments as in [`EntryExpectation::new`]; bandwidths up to π, or up to twice the floor's half width.
+    /// Arguments as in [`EntryExpectation::new`]; bandwidths up to 1 rad, or up to twice the floor's half width.
     ///
     /// # Errors
     /// As there.
@@ -66,7 +66,7 @@ impl Study {
             laws,
             truth: FloorTruth::new(entry),
             largest: if technique.bandwidth_is_angle() {
-                core::f64::consts::PI
+                1.0
             } else {
                 2.0 * width
             },
