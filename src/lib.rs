@@ -8,6 +8,7 @@ pub mod evaluate;
 pub mod exit;
 pub mod expectation;
 pub mod exr_output;
+pub mod extrapolation;
 pub mod film;
 pub mod geometry;
 pub mod golden;

@@ -1,5 +1,7 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod bandwidth;
+mod bandwidth_answer;
 mod bias;
 mod converge;
 mod evaluate;
@@ -39,6 +41,7 @@ struct Cli {
 enum Command {
     Verify(verify::Args),
     List(list::Args),
+    Bandwidth(bandwidth::Args),
     Bias(bias::Args),
     Converge(converge::Args),
     Evaluate(evaluate::Args),
@@ -59,6 +62,7 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         Command::Verify(args) => verify::run(&args),
         Command::List(args) => list::run(&args),
+        Command::Bandwidth(args) => bandwidth::run(&args),
         Command::Bias(args) => bias::run(&args),
         Command::Converge(args) => converge::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),

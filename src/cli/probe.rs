@@ -217,6 +217,24 @@ fn regularized(
     })
 }
 
+/// The floor points of a CSV file.
+pub(super) fn floor_points(
+    path: &std::path::Path,
+    entry: &nephroid_analytic::scene::Entry,
+    truth: &FloorTruth,
+) -> Result<Vec<[f64; 2]>, Error> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|e| Error::read(&file, e))?;
+    let points = read_points(&file, &text)?;
+    points
+        .iter()
+        .map(|p| {
+            check_on_floor(&file, entry, truth, p)?;
+            Ok([p.at[0], p.at[1]])
+        })
+        .collect()
+}
+
 /// A point and the line it stands on.
 struct Point {
     line: usize,
