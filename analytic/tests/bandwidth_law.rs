@@ -50,7 +50,7 @@ fn sphere_moments(
     b: f64,
 ) -> [f64; 2] {
     let e = EntryExpectation::of_sphere(mirror, estimator(t, k, &[b])).unwrap();
-    let m = e.unwrap().at(x[0], x[1], 1e-10)[0];
+    let m = e.at(x[0], x[1], 1e-10)[0];
     [m.mean.value, m.second_moment.value]
 }
 

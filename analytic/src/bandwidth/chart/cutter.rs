@@ -354,7 +354,7 @@ impl<I: Integrand> Cutter<'_, I> {
         }
         if task.depth >= SMALL && (level.is_some() || mixed.is_some() || unknown.is_some()) {
             let most = self.most(&task, &samples);
-            if (0..2).all(|k| 4.0 * most[k] < self.negligible * self.carried[k]) {
+            if (0..2).all(|k| 4.0 * most[k] <= self.negligible * self.carried[k]) {
                 self.leave(most);
                 return;
             }
@@ -479,7 +479,7 @@ impl<I: Integrand> Cutter<'_, I> {
         // Of a sliver beside a border one sample says enough.
         if task.depth >= SMALL {
             let middle = at(N / 2, N / 2).map(|v| 4.0 * v);
-            if (0..2).all(|k| f64::abs(middle[k]) < self.negligible * self.carried[k]) {
+            if (0..2).all(|k| f64::abs(middle[k]) <= self.negligible * self.carried[k]) {
                 self.leaves.push(Leaf {
                     task,
                     pair: Pair {

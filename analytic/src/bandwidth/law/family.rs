@@ -211,18 +211,13 @@ impl Family {
         }
     }
 
-    /// The light of a spherical mirror on an unbounded receiver; `None` for parallel light.
+    /// The light of a spherical mirror on an unbounded receiver.
     pub fn of_sphere(
         mirror: &SphereMirror<f64>,
         technique: Technique,
         kernel: Kernel,
     ) -> Option<Self> {
-        Self::unbounded(
-            scenes::sphere(mirror)?,
-            mirror.receiver_z,
-            technique,
-            kernel,
-        )
+        Self::unbounded(scenes::sphere(mirror), mirror.receiver_z, technique, kernel)
     }
 
     /// The light that a flat interface refracts onto an unbounded receiver.
@@ -231,10 +226,20 @@ impl Family {
         technique: Technique,
         kernel: Kernel,
     ) -> Option<Self> {
-        Self::unbounded(scenes::interface(form)?, form.receiver_z, technique, kernel)
+        Self::unbounded(
+            vec![scenes::interface(form)?],
+            form.receiver_z,
+            technique,
+            kernel,
+        )
     }
 
-    fn unbounded(caustic: Caustic, z: f64, technique: Technique, kernel: Kernel) -> Option<Self> {
+    fn unbounded(
+        caustics: Vec<Caustic>,
+        z: f64,
+        technique: Technique,
+        kernel: Kernel,
+    ) -> Option<Self> {
         check(technique, kernel, &[WIDTH]).ok()?;
         let receiver = Receiver {
             center: [0.0; 2],
@@ -245,8 +250,8 @@ impl Family {
         };
         let class = Class {
             class: PathClass::LSDE,
-            photons: caustic.photons,
-            caustics: vec![caustic],
+            photons: caustics.first()?.photons,
+            caustics,
             bundles: Vec::new(),
         };
         Some(Self::of(

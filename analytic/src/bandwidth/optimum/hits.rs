@@ -78,7 +78,7 @@ pub(super) fn probability(
                 &profile,
                 link,
             );
-            add(integrate(&Sampled(c), tolerance));
+            add(integrate(&Sampled(c), tolerance, [0.0; 2]));
         };
         if family.technique != Technique::Linked {
             connect(None);
@@ -102,7 +102,7 @@ pub(super) fn probability(
         if !m.is_weighted() {
             return None;
         }
-        add(integrate(&Sampled(m), tolerance));
+        add(integrate(&Sampled(m), tolerance, [0.0; 2]));
     }
     Some(sum)
 }
