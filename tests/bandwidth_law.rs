@@ -177,7 +177,11 @@ fn cusp_and_foci_of_the_catalogue() {
             (Technique::Merge, Kernel::Disc),
         ] {
             let s = study(entry, t, k);
-            let law = s.laws(x[0], x[1])[0].unwrap();
+            // A cusp of which rounding hides the place has no law; it is never taken for a fold.
+            let Some(law) = s.laws(x[0], x[1])[0] else {
+                assert_eq!(place, Place::Cusp, "{t}");
+                continue;
+            };
             assert_eq!((law.place, law.order), (place, Some(order)), "{t} {law:?}");
             let ratio = |b: f64| {
                 let m = s.moments(0, x, b, 1e-6).unwrap();

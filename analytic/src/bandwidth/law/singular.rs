@@ -127,6 +127,9 @@ fn solve(
     (last < close).then_some(u)
 }
 
+/// The least bend of a fold, relative to the stretch along it.
+const STRAIGHT: f64 = 1e-4;
+
 /// The fold nearest to a path, and what it would give to a point on it.
 pub(super) fn fold(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f64; 2], Leading)> {
     let size = size(map);
@@ -159,6 +162,10 @@ pub(super) fn fold(map: &Map<'_>, start: [f64; 2], shape: &Shape) -> Option<([f6
     let along = dot(&bend, &f.e);
     let across: Vector = core::array::from_fn(|c| bend[c] - along * f.e[c]);
     let kappa = libm::sqrt(dot(&across, &across));
+    // Where a fold does not bend it is a cusp, and its strength has no bound.
+    if !(kappa > STRAIGHT * f.sigma) {
+        return None;
+    }
     let cell = size[0] * size[1];
     let strength = |w: f64| w * cell / f.sigma * libm::sqrt(2.0 / kappa);
     let leading = Leading {

@@ -13,7 +13,7 @@ const NODES: usize = 12;
 /// What the last coefficients of a piece may be, relative to the largest.
 const SMALL: f64 = 1e-6;
 /// Halvings at most: where the kernel meets an edge the functions have a kink.
-const DEEPEST: u32 = 2;
+const DEEPEST: u32 = 7;
 
 #[derive(Clone, Debug)]
 struct Piece {
