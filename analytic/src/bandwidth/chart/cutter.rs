@@ -424,6 +424,12 @@ impl<I: Integrand> Cutter<'_, I> {
                 Border::Parts(found) => parts.extend(found.into_iter().map(|p| (p, inside))),
             }
         }
+        // Parts of which nothing is known would be found from both sides.
+        if edge < top && parts.iter().any(|((_, part), _)| *part == Part::Unknown) {
+            let axis = (task.depth % 2) as usize;
+            self.halve(task, axis);
+            return;
+        }
         for ((chart, part), inside) in parts {
             let [first, last] = task.rings;
             let rings = match (part, inside) {
@@ -431,14 +437,11 @@ impl<I: Integrand> Cutter<'_, I> {
                 (_, true) => [first, edge],
                 (_, false) => [edge + 1, last],
             };
-            self.push(
-                &Task {
-                    rings,
-                    ..task.clone()
-                },
-                chart,
-                None,
-            );
+            let task = Task {
+                rings,
+                ..task.clone()
+            };
+            self.push(&task, chart, None);
         }
     }
 

@@ -258,6 +258,11 @@ impl SmallBandwidth {
                 }
             }
             let singular = self.singularity(map, &found, unit);
+            // A path that is both perfect and degenerate, and of which more is not known.
+            let hidden = |u: &[f64; 2]| libm::sqrt(map.at(*u).square()) <= ON * unit;
+            if singular.is_none() && found.degenerate.iter().any(hidden) {
+                return None;
+            }
             if singular.is_none() {
                 let nearest = found.approaches.first().map(|a| a.1);
                 let folds = folds.into_iter().filter(|d| *d > ON * unit);
