@@ -157,51 +157,25 @@ fn on_an_edge_the_mean_tends_to_half() {
     }
 }
 
+/// At the nephroid's cusp, at half the radius, rounding hides the place: there is a law of a cusp or none, never that of a fold, whose
+/// strength has no bound there. The exact moments grow like α^(−2/3) and α^(−8/3).
 #[test]
-fn cusp_and_foci_of_the_catalogue() {
-    // The nephroid's cusp is at half the radius; the ellipsoid's focus is where its caustic is a point.
+fn a_cusp_is_not_taken_for_a_fold() {
     let cup = entry::load("cup").unwrap();
-    let ellipsoid = entry::load("ellipsoid").unwrap();
-    let Kind::ConicMirrors(conic) = &ellipsoid.kind else {
-        panic!()
-    };
-    let focus = conic.conic.center;
-    let exponents = [(Place::Cusp, -2.0 / 3.0), (Place::PointFocus, -2.0)];
-    for ((entry, x), (place, order)) in [(&cup, [0.6, 0.0]), (&ellipsoid, focus)]
-        .into_iter()
-        .zip(exponents)
-    {
-        for (t, k) in [
-            (Technique::Camera, Kernel::Cone),
-            (Technique::Light, Kernel::Epanechnikov),
-            (Technique::Merge, Kernel::Disc),
-        ] {
-            let s = study(entry, t, k);
-            // A cusp of which rounding hides the place has no law; it is never taken for a fold.
-            let Some(law) = s.laws(x[0], x[1])[0] else {
-                assert_eq!(place, Place::Cusp, "{t}");
-                continue;
-            };
-            assert_eq!((law.place, law.order), (place, Some(order)), "{t} {law:?}");
-            let ratio = |b: f64| {
-                let m = s.moments(0, x, b, 1e-6).unwrap();
-                [
-                    m.mean.value / law.mean(b),
-                    m.second_moment.value / law.second_moment(b),
-                ]
-            };
-            let (coarse, fine) = (ratio(1e-3), ratio(1e-5));
-            for i in 0..2 {
-                assert!(
-                    (fine[i] - 1.0).abs() < 2e-3,
-                    "{t} {coarse:?} {fine:?} {law:?}"
-                );
-                assert!(
-                    (fine[i] - 1.0).abs() < 0.5 * (coarse[i] - 1.0).abs() + 1e-4,
-                    "{t} {coarse:?} {fine:?}"
-                );
-            }
+    for (t, k) in [
+        (Technique::Camera, Kernel::Cone),
+        (Technique::Merge, Kernel::Disc),
+    ] {
+        let s = study(&cup, t, k);
+        if let Some(law) = s.laws(0.6, 0.0)[0] {
+            assert_eq!(law.place, Place::Cusp, "{t} {law:?}");
         }
+        let [coarse, fine] = [1e-3, 1e-4].map(|b| s.moments(0, [0.6, 0.0], b, 1e-6).unwrap());
+        let order = |a: f64, b: f64| libm::log10(b / a);
+        let mean = order(coarse.mean.value, fine.mean.value);
+        let second = order(coarse.second_moment.value, fine.second_moment.value);
+        assert!((mean - 2.0 / 3.0).abs() < 0.05, "{t} {mean}");
+        assert!((second - 8.0 / 3.0).abs() < 0.05, "{t} {second}");
     }
 }
 
@@ -264,8 +238,8 @@ fn the_best_bandwidth_has_the_least_error_and_follows_the_law_for_many_paths() {
         );
         // theory/consistency.md, section 1: the best progressive average needs 1.0817 times the error of the best bandwidth.
         let average =
-            progressive(&[&Curve::of_law(law, 1.0)], 1_000_000_000_000, 1.0 / 6.0).unwrap();
-        let single = fixed(&[&Curve::of_law(law, 1.0)], 1e12).unwrap();
+            progressive(&[&Curve::of_law(law, 1e3)], 1_000_000_000_000, 1.0 / 6.0).unwrap();
+        let single = fixed(&[&Curve::of_law(law, 1e3)], 1e12).unwrap();
         let loss = libm::pow(average.rmse / single.rmse, 2.0);
         assert!((loss - 1.0817).abs() < 2e-3, "{t} {loss}");
         // The best first bandwidth, there as well.
@@ -510,10 +484,7 @@ fn the_command_answers_and_refuses() {
             &["mirror-wall", "--paths", "10", "--points", "no.csv"],
             "no.csv",
         ),
-        (
-            &["floor", "--paths", "10", "--beam-area", "-1"],
-            "beam-area",
-        ),
+        (&["floor", "--paths", "10", "--beam-area=-1"], "beam-area"),
         (
             &["corner", "--paths", "10", "--technique", "camera"],
             "technique",

@@ -18,7 +18,7 @@ use super::entry::{EntryExpectation, Estimator};
 use super::{Bounded, Moments};
 use crate::camera::Film;
 use crate::class::PathClass;
-use crate::flux::poly::{Chebyshev, Grid, N, nodes, value};
+use crate::flux::poly::{Chebyshev, N, nodes, value};
 use crate::optics::fresnel_transmittance;
 use crate::pixel::rule::Rule;
 use crate::scene::{Entry, InvalidParameter, Kind};
@@ -402,14 +402,13 @@ fn corner_and_size(columns: &Range<u32>, rows: &Range<u32>) -> ([f64; 2], [f64; 
 fn is_seen(seen: &Seen<'_>, columns: &Range<u32>, rows: &Range<u32>) -> Option<bool> {
     let (low, size) = corner_and_size(columns, rows);
     let at = |k: usize, a: f64| low[k] + 0.5 * size[k] * (1.0 + a);
-    let margins: Vec<_> = nodes()
-        .iter()
-        .flat_map(|b| nodes().iter().map(|a| [at(0, *a), at(1, *b)]))
-        .map(|u| seen.margins(u))
-        .collect();
+    let x = nodes();
+    let margins: [[[f64; MARGINS]; N]; N] = core::array::from_fn(|l| {
+        core::array::from_fn(|k| seen.margins([at(0, x[k]), at(1, x[l])]))
+    });
     let mut all = Some(true);
-    for m in 0..MARGINS {
-        let grid: Grid = core::array::from_fn(|l| core::array::from_fn(|k| margins[l * N + k][m]));
+    let grids = (0..MARGINS).map(|m| margins.map(|row| row.map(|node| node[m])));
+    for grid in grids {
         if !grid.iter().flatten().all(|g| g.is_finite()) {
             all = None;
             continue;
