@@ -1,19 +1,14 @@
 //! Expectations at points of the floor of any catalogue or user entry.
 
-use core::f64::consts::PI;
-use std::sync::Arc;
-
 use super::chart::chain::Chained;
-use super::chart::chains::{Chains, chains};
-use super::chart::connection::{Caustic, Connection, LANDING, Link, Receiver, Source};
+use super::chart::connection::{Caustic, Connection, LANDING, Link, Receiver};
 use super::chart::merging::Merging;
 use super::chart::{integrate, scenes};
 use super::kernel::Profile;
+use super::light::{self, Class};
 use super::quadrature::Pair;
 use super::{Bounded, Convention, Kernel, Moments, Technique, check};
-use crate::class::{Chain, PathClass};
-use crate::entries;
-use crate::flux::Bundle;
+use crate::class::PathClass;
 use crate::kinds::flat_interface::FlatInterface;
 use crate::kinds::sphere_mirror::SphereMirror;
 use crate::scene::{Entry, InvalidParameter};
@@ -43,20 +38,6 @@ pub struct Estimator<'a> {
     pub bandwidths: &'a [f64],
 }
 
-/// Light of one class.
-#[derive(Clone, Debug)]
-struct Class {
-    class: PathClass,
-    /// What is connected through a mollified vertex.
-    caustics: Vec<Caustic>,
-    /// What is connected through the last of several vertices.
-    chains: Option<Chains>,
-    /// What lands on the floor.
-    bundles: Vec<Arc<dyn Bundle>>,
-    /// Flux of all photons [W].
-    photons: f64,
-}
-
 impl EntryExpectation {
     /// Prepares an estimator for an entry.
     ///
@@ -83,59 +64,7 @@ impl EntryExpectation {
                 allowed: "exact, vertex (parallel light is infinitely far away)".to_owned(),
             });
         }
-        let unknown = || InvalidParameter {
-            key: "kind".to_owned(),
-            found: entry.kind.name().to_owned(),
-            allowed: format!(
-                "a kind with an expectation at finite bandwidth for the technique {technique}"
-            ),
-        };
-        let floor = entry.kind.floor().ok_or_else(unknown)?;
-        let receiver = Receiver {
-            center: floor.center,
-            half_width: floor.half_width,
-            z: 0.0,
-            size: 1.0,
-            escape: scenes::diagonal(&entry.kind),
-        };
-        let mut classes = Vec::new();
-        let mut bundles = entries::form(&entry.kind).bundles().unwrap_or_default();
-        // The classes that end on the floor, however they are seen.
-        let mut ends: Vec<PathClass> = Vec::new();
-        for class in entry.kind.classes() {
-            let seen = PathClass {
-                eye: Chain::EMPTY,
-                ..*class
-            };
-            if !ends.contains(&seen) {
-                ends.push(seen);
-            }
-        }
-        for (position, &class) in ends.iter().enumerate() {
-            if class.light.is_empty() {
-                continue;
-            }
-            // Any number of interactions can be merged; what is connected is mollified at one vertex.
-            let caustics = scenes::caustics(&entry.kind, class, beam_area);
-            let (bundles, chains) = match (bundles.get_mut(position), &caustics) {
-                (Some(b), None) if technique == Technique::Merge => (core::mem::take(b), None),
-                (_, None) if technique != Technique::Merge => {
-                    (Vec::new(), chains(&entry.kind, class))
-                }
-                _ => (Vec::new(), None),
-            };
-            let caustics = caustics.unwrap_or_default();
-            if caustics.is_empty() && bundles.is_empty() && chains.is_none() {
-                return Err(unknown());
-            }
-            classes.push(Class {
-                class,
-                caustics,
-                chains,
-                bundles,
-                photons: scenes::photons(&entry.kind, beam_area).ok_or_else(unknown)?,
-            });
-        }
+        let (receiver, classes) = light::of_entry(entry, technique, beam_area)?;
         Ok(Self::of(classes, receiver, estimator))
     }
 
@@ -192,20 +121,7 @@ impl EntryExpectation {
         estimator: Estimator<'_>,
     ) -> Result<Self, InvalidParameter> {
         check(estimator.technique, estimator.kernel, estimator.bandwidths)?;
-        let receiver = Receiver {
-            center: [0.0; 2],
-            half_width: [f64::INFINITY; 2],
-            z,
-            size: 1.0,
-            escape: None,
-        };
-        let class = Class {
-            class: PathClass::LSDE,
-            photons: caustics.first().map_or(0.0, |c| c.photons),
-            caustics,
-            chains: None,
-            bundles: Vec::new(),
-        };
+        let (receiver, class) = light::unbounded(caustics, z);
         Ok(Self::of(vec![class], receiver, estimator))
     }
 
@@ -306,13 +222,5 @@ impl EntryExpectation {
             }
         }
         sum
-    }
-}
-
-/// The flux of the photons of a source [W].
-pub(super) fn photons(source: &Source, beam_area: f64) -> f64 {
-    match source {
-        Source::Point(_, intensity) => 4.0 * PI * intensity,
-        Source::Beam(_, irradiance) => irradiance * beam_area,
     }
 }

@@ -24,6 +24,7 @@ pub mod frame;
 mod hits;
 mod kernel;
 pub mod law;
+mod light;
 mod linked;
 mod merge;
 pub mod optimum;

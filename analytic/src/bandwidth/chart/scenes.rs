@@ -8,11 +8,11 @@ use super::connection::{Caustic, Interaction, Source};
 use super::surfaces::{
     ConicWall, Cylinder, FocalConic, HeightField, Level, Rectangle, SphereCap, Surface, frame_of,
 };
-use crate::bandwidth::entry::photons as flux_of;
+use crate::bandwidth::light::photons as flux_of;
 use crate::class::PathClass;
 use crate::kinds::flat_interface::FlatInterface;
 use crate::kinds::sphere_mirror::{Light, Side, SphereMirror};
-use crate::scene::{DirectionalLight, Floor, FocalLight, Kind, PointLight, VerticalLight};
+use crate::scene::{ArcWall, DirectionalLight, Floor, FocalLight, Kind, PointLight, VerticalLight};
 use crate::vector::{Vec3, vec3};
 
 fn point(light: &PointLight) -> Source {
@@ -118,30 +118,8 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
             let ball = ball(center, s.ball.radius, &point(&s.light));
             (Arc::new(ball), Interaction::Mirror(s.ball.reflectance))
         }
-        Kind::CylinderCup(s) => {
-            let half_arc = s.wall.half_arc_degrees.to_radians();
-            let wall = Cylinder {
-                center: [0.0; 2],
-                radius: s.wall.radius,
-                side: -1.0,
-                azimuth: [-half_arc, half_arc],
-                height: s.wall.height,
-                half_arc,
-            };
-            (Arc::new(wall), Interaction::Mirror(s.wall.reflectance))
-        }
-        Kind::CylinderLamp(s) => {
-            let half_arc = s.wall.half_arc_degrees.to_radians();
-            let wall = Cylinder {
-                center: [0.0; 2],
-                radius: s.wall.radius,
-                side: -1.0,
-                azimuth: [-half_arc, half_arc],
-                height: s.wall.height,
-                half_arc,
-            };
-            (Arc::new(wall), Interaction::Mirror(s.wall.reflectance))
-        }
+        Kind::CylinderCup(s) => cup(&s.wall),
+        Kind::CylinderLamp(s) => cup(&s.wall),
         Kind::Pillar(s) => {
             let [x, y, _] = s.light.position;
             let (dx, dy) = (x - s.pillar.center[0], y - s.pillar.center[1]);
@@ -261,6 +239,20 @@ fn single(kind: &Kind) -> Option<(Arc<dyn Surface>, Interaction)> {
         }
         _ => return None,
     })
+}
+
+/// The inner side of a wall about the z axis.
+fn cup(wall: &ArcWall) -> (Arc<dyn Surface>, Interaction) {
+    let half_arc = wall.half_arc_degrees.to_radians();
+    let side = Cylinder {
+        center: [0.0; 2],
+        radius: wall.radius,
+        side: -1.0,
+        azimuth: [-half_arc, half_arc],
+        height: wall.height,
+        half_arc,
+    };
+    (Arc::new(side), Interaction::Mirror(wall.reflectance))
 }
 
 /// How far a connection under water may go sideways, in depths: kernels that reach farther are cut there.

@@ -1,27 +1,14 @@
 //! The light of an entry as families of paths about a floor point, each with its offset from a perfect path.
 
-use std::sync::Arc;
-
 use crate::bandwidth::chart::connection::{Caustic, Connection, Link, Receiver};
 use crate::bandwidth::chart::merging::Merging;
 use crate::bandwidth::chart::{Integrand, MARGINS, scenes};
 use crate::bandwidth::kernel::Profile;
+use crate::bandwidth::light::{self, Class};
 use crate::bandwidth::{Convention, Kernel, Technique, check};
-use crate::class::{Chain, PathClass};
-use crate::entries;
-use crate::flux::Bundle;
 use crate::kinds::flat_interface::FlatInterface;
 use crate::kinds::sphere_mirror::SphereMirror;
 use crate::scene::{Entry, InvalidParameter};
-
-/// The light of one class.
-#[derive(Clone, Debug)]
-pub(in crate::bandwidth) struct Class {
-    pub class: PathClass,
-    pub caustics: Vec<Caustic>,
-    pub bundles: Vec<Arc<dyn Bundle>>,
-    pub photons: f64,
-}
 
 /// A technique on an entry.
 #[derive(Clone, Debug)]
@@ -144,52 +131,10 @@ impl Family {
     ) -> Result<Self, InvalidParameter> {
         entry.validate()?;
         check(technique, kernel, &[WIDTH])?;
-        let unknown = || InvalidParameter {
-            key: "kind".to_owned(),
-            found: entry.kind.name().to_owned(),
-            allowed: format!(
-                "a kind with an expectation at finite bandwidth for the technique {technique}"
-            ),
-        };
-        let floor = entry.kind.floor().ok_or_else(unknown)?;
-        let receiver = Receiver {
-            center: floor.center,
-            half_width: floor.half_width,
-            z: 0.0,
-            size: 1.0,
-            escape: scenes::diagonal(&entry.kind),
-        };
-        let mut bundles = entries::form(&entry.kind).bundles().unwrap_or_default();
-        let mut ends: Vec<PathClass> = Vec::new();
-        for class in entry.kind.classes() {
-            let seen = PathClass {
-                eye: Chain::EMPTY,
-                ..*class
-            };
-            if !ends.contains(&seen) {
-                ends.push(seen);
-            }
-        }
-        let mut classes = Vec::new();
-        for (position, &class) in ends.iter().enumerate() {
-            if class.light.is_empty() {
-                continue;
-            }
-            let caustics = scenes::caustics(&entry.kind, class, beam_area);
-            let bundles = match (bundles.get_mut(position), &caustics) {
-                (Some(b), None) if technique == Technique::Merge => core::mem::take(b),
-                _ => Vec::new(),
-            };
-            let caustics = caustics.unwrap_or_default();
-            if caustics.is_empty() && bundles.is_empty() {
-                return Err(unknown());
-            }
-            classes.push(Class {
-                class,
-                caustics,
-                bundles,
-                photons: scenes::photons(&entry.kind, beam_area).ok_or_else(unknown)?,
-            });
+        let (receiver, classes) = light::of_entry(entry, technique, beam_area)?;
+        // Chains have no law.
+        if classes.iter().any(|c| c.chains.is_some()) {
+            return Err(light::unknown(&entry.kind, technique));
         }
         Ok(Self::of(classes, receiver, technique, kernel, convention))
     }
@@ -241,19 +186,7 @@ impl Family {
         kernel: Kernel,
     ) -> Option<Self> {
         check(technique, kernel, &[WIDTH]).ok()?;
-        let receiver = Receiver {
-            center: [0.0; 2],
-            half_width: [f64::INFINITY; 2],
-            z,
-            size: 1.0,
-            escape: None,
-        };
-        let class = Class {
-            class: PathClass::LSDE,
-            photons: caustics.first()?.photons,
-            caustics,
-            bundles: Vec::new(),
-        };
+        let (receiver, class) = light::unbounded(caustics, z);
         Some(Self::of(
             vec![class],
             receiver,

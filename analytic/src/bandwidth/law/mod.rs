@@ -28,8 +28,9 @@ mod roots;
 mod singular;
 mod smooth;
 
+use crate::bandwidth::light::Class;
 use constants::Shape;
-use family::{Class, Family, Map};
+use family::{Family, Map};
 use roots::{Found, complete, find};
 use singular::Leading;
 

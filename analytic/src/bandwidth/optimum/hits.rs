@@ -8,7 +8,8 @@ use crate::bandwidth::chart::connection::{Connection, LANDING, Link};
 use crate::bandwidth::chart::merging::Merging;
 use crate::bandwidth::chart::{Integrand, Node, integrate};
 use crate::bandwidth::kernel::Profile;
-use crate::bandwidth::law::family::{Class, Family};
+use crate::bandwidth::law::family::Family;
+use crate::bandwidth::light::Class;
 use crate::bandwidth::{Bounded, Convention, Kernel, Technique};
 
 /// An integrand whose density is that of the samples.
