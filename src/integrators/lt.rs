@@ -180,7 +180,7 @@ impl Block {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn trace<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
     emitter: &L::Emitter,

@@ -241,7 +241,7 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn emit<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
     emitter: &L::Emitter,
@@ -281,7 +281,7 @@ fn emit<L: Light, S: Specular, D: Deviation>(
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn trace<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
     defect: &D,

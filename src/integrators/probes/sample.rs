@@ -405,7 +405,7 @@ impl<L: Light, S: Chains> Probe for Sampler<L, S> {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn draw(stream: &Stream, first: u64, dimension: Dimension, u: &mut Lanes, v: &mut Lanes) {
     stream.pairs(first, dimension, u, v);
 }
