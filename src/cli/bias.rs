@@ -32,7 +32,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<u8, Error> {
     let options = &args.options;
-    let (entry, integrator) = options.load()?;
+    let (entry, integrator) = options.load(true)?;
     let request = Request {
         asked: options.asked(&entry, integrator.as_ref(), args.replicates),
         bandwidths: &args.bandwidths.0,

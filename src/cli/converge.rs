@@ -49,7 +49,7 @@ fn iterations(text: &str) -> Result<u32, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<u8, Error> {
     let options = &args.options;
-    let (entry, integrator) = options.load()?;
+    let (entry, integrator) = options.load(false)?;
     let request = Request {
         asked: options.asked(&entry, integrator.as_ref(), args.replicates),
         schedule: &args.schedule,

@@ -51,12 +51,14 @@ pub struct Options {
 }
 
 impl Options {
-    /// The scene and the integrator, which fit each other.
-    pub fn load(&self) -> Result<(Entry, Box<dyn Integrator>), Error> {
+    /// The scene and the integrator, which fit each other. Photons that are aimed tell a small bias from fewer paths, but hide how
+    /// the variance of the method grows as its bandwidth falls.
+    pub fn load(&self, aims_photons: bool) -> Result<(Entry, Box<dyn Integrator>), Error> {
         let entry = crate::entry::load(&self.scene)?;
         let settings = Settings {
             kernel: self.kernel,
-            fault: None,
+            aims_photons,
+            ..Settings::default()
         };
         let integrator = by_name(&self.integrator, &settings)?;
         supported(&entry, integrator.as_ref())?;

@@ -60,6 +60,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let settings = Settings {
         kernel: args.kernel,
         fault: None,
+        ..Settings::default()
     };
     let integrator = by_name(&args.integrator, &settings)?;
     integrator.supports(&entry).map_err(|reason| {

@@ -5,6 +5,7 @@
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
 pub mod accumulate;
+mod aim_of_photons;
 mod camera_paths;
 mod chains;
 mod connection;
@@ -125,6 +126,12 @@ pub trait Prepared: Send + Sync {
     /// Adds the contributions of `paths` paths to the film. The same (seed, iteration, paths, bandwidth) gives the same
     /// bits. `bandwidth` is an angle [rad] or a radius [m], ignored by methods that regularize nothing.
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
+
+    /// The part of the light's emission that photons are drawn from at a bandwidth, by flux: what the second moment of a
+    /// photon's contribution is multiplied by. 1 unless photons are aimed ([`Settings::aims_photons`]).
+    fn share_of_emission(&self, _bandwidth: f64) -> f64 {
+        1.0
+    }
 }
 
 /// Whether the regularizing methods know the kind of the scene: those with a floor.

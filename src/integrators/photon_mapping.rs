@@ -8,6 +8,8 @@
 //! a point light (a cross-section of a directional beam that covers the mirror); one that lands in X adds
 //! Φ k(|X - x|)/N to the irradiance at x, in which the cosine is already.
 
+use std::sync::Arc;
+
 use multiversion::multiversion;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
@@ -22,6 +24,7 @@ use crate::geometry::scene::Scene;
 use crate::geometry::specular::Specular;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
+use super::aim_of_photons::{Aimed, Aims, part_of};
 use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
 use super::defect::Defect;
 use super::deviation::{Deviation, Sound};
@@ -29,13 +32,14 @@ use super::kernel::{Kernel, RadiusKernel};
 use super::merged_chains::MergedChains;
 use super::photon_grid::{PhotonGrid, Photons};
 use super::plan::{next_event_plan, plan_of};
+use super::probes::aim::Part;
 use super::settings::Settings;
 use super::{ClassPlan, Plan, Prepared, Technique, Treatment, Unsupported};
 
 /// Photons that a camera path meets in the nine cells around its vertex, about.
 const MET: f64 = 128.0;
 /// Photons traced for a map, at least and at most: powers of two.
-const MAP: [u64; 2] = [1 << 12, 1 << 18];
+pub(super) const MAP: [u64; 2] = [1 << 12, 1 << 18];
 /// Photons traced to find out how dense they lie.
 pub(super) const PILOT: u64 = 1 << 13;
 
@@ -113,9 +117,10 @@ fn deviating<L: Light, S: Specular, D: Deviation>(
         settings: *settings,
         defect,
         density: 0.0,
+        aims: settings.aims_photons.then(Aims::default),
     };
     if S::EXISTS {
-        mapping.density = mapping.pilot_density();
+        mapping.density = mapping.pilot_density(None);
     }
     Box::new(mapping)
 }
@@ -127,6 +132,8 @@ struct PhotonMapping<L: Light, S, D> {
     defect: D,
     /// Photons that reach the floor per photon traced and square metre of their bounding box, as a pilot found it.
     density: f64,
+    /// Parts of the emission, if photons are aimed.
+    aims: Option<Aims>,
 }
 
 /// Memory of an iteration.
@@ -162,13 +169,14 @@ pub(super) fn blocks(start: u64, end: u64) -> impl Iterator<Item = (u64, usize)>
 impl<L: Light, S: Specular, D: Deviation> PhotonMapping<L, S, D> {
     /// Traces photons of a fixed stream, so that the size of a map depends on the scene and the radius alone, not on the
     /// photons that it will hold (which would bias it).
-    fn pilot_density(&self) -> f64 {
+    fn pilot_density(&self, part: Option<&Part>) -> f64 {
         let stream = Stream::new(u64::MAX, u32::MAX);
         let mut work = Work::new();
         for (first, live) in blocks(0, PILOT) {
             emit(
                 &self.scene,
                 &self.emitter,
+                part,
                 &self.defect,
                 &stream,
                 first,
@@ -178,21 +186,40 @@ impl<L: Light, S: Specular, D: Deviation> PhotonMapping<L, S, D> {
         }
         work.photons.x.len() as f64 / (PILOT as f64 * work.photons.area())
     }
+
+    /// Where photons of a radius > 0 are aimed, if they are.
+    fn aimed(&self, radius: f64) -> Option<Arc<Aimed>> {
+        let make = |radius: f64| {
+            let part = part_of(&self.scene, &self.emitter, radius);
+            let density = if part.is_empty() {
+                0.0
+            } else {
+                self.pilot_density(Some(&part))
+            };
+            Aimed { part, density }
+        };
+        let aims = self.aims.as_ref().filter(|_| S::EXISTS && radius > 0.0)?;
+        Some(aims.of(radius, make))
+    }
 }
 
-/// Photons for a map, from their density per photon traced.
-pub(super) fn map_size(density: f64, radius: f64) -> u64 {
+/// Photons for a map, a power of two of at least `least`, from their density per photon traced.
+pub(super) fn map_size(density: f64, radius: f64, least: u64) -> u64 {
     let met = density * 9.0 * radius * radius;
-    let [least, most] = MAP;
     let mut size = least;
     // No photon at all gives NaN, and the smallest map.
-    while size < most && (2 * size) as f64 * met <= MET {
+    while size < MAP[1] && (2 * size) as f64 * met <= MET {
         size *= 2;
     }
     size
 }
 
 impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
+    fn share_of_emission(&self, bandwidth: f64) -> f64 {
+        self.aimed(bandwidth)
+            .map_or(1.0, |aimed| aimed.part.share())
+    }
+
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
         film.paths += paths;
         let before = film.nonzero.iter().sum();
@@ -202,7 +229,13 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
         let stream = Stream::new(seed, iteration);
         let kernel = RadiusKernel::new(kernel_of(&self.settings), bandwidth, self.settings.fault);
         let mut work = Work::new();
-        let size = map_size(self.density, kernel.radius);
+        let aimed = self.aimed(kernel.radius);
+        let part = aimed.as_ref().map(|a| &a.part);
+        let density = aimed.as_ref().map_or(self.density, |a| a.density);
+        let share = part.map_or(1.0, Part::share);
+        // Photons that are aimed are so dense that a block of them is map enough.
+        let least = if part.is_some() { BLOCK as u64 } else { MAP[0] };
+        let size = map_size(density, kernel.radius, least);
         for start in (0..paths).step_by(size as usize) {
             let end = paths.min(start + size);
             if S::EXISTS {
@@ -211,6 +244,7 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
                     emit(
                         &self.scene,
                         &self.emitter,
+                        part,
                         &self.defect,
                         &stream,
                         first,
@@ -222,7 +256,7 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
                     .build(&work.photons, kernel.radius * self.defect.cell());
             }
             let divisor = self.defect.divisor(end - start, work.photons.x.len());
-            let norm = kernel.norm * self.defect.flux(self.emitter.flux()) / divisor;
+            let norm = kernel.norm * self.defect.flux(self.emitter.flux()) * share / divisor;
             for (first, live) in blocks(start, end) {
                 trace(
                     &self.scene,
@@ -245,6 +279,7 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
 fn emit<L: Light, S: Specular, D: Deviation>(
     scene: &Scene<L, S>,
     emitter: &L::Emitter,
+    part: Option<&Part>,
     defect: &D,
     stream: &Stream,
     first: u64,
@@ -260,6 +295,14 @@ fn emit<L: Light, S: Specular, D: Deviation>(
     } = work;
     stream.pairs(first, Dimension::Emission, u, v);
     defect.numbers(Dimension::Emission, u, v);
+    if let Some(part) = part {
+        if part.is_empty() {
+            return;
+        }
+        for i in 0..BLOCK {
+            (u[i], v[i]) = part.place(u[i], v[i]);
+        }
+    }
     for i in 0..BLOCK {
         let (origin, direction) = emitter.ray(u[i], v[i]);
         let landing = scene.landing(origin, direction);

@@ -10,4 +10,7 @@ pub struct Settings {
     pub kernel: Option<Kernel>,
     /// A defect, to test what judges the integrator.
     pub fault: Option<Fault>,
+    /// Whether photons are limited to those that can land within the radius of what the camera sees: for studies of small
+    /// parts of a scene. Methods without photons and scenes of chains ignore it.
+    pub aims_photons: bool,
 }

@@ -6,7 +6,7 @@ use nephroid_analytic::scene::InvalidParameter;
 
 use super::allocation::shares;
 use super::classes::{Asked, Bandwidths, Skipped, Subject};
-use super::expected::{Expected, expected, sharp};
+use super::expected::{Expected, aimed, expected, sharp};
 use super::outcome::{State, Test, state};
 use super::power_law::{Design, Exponent, scale};
 use super::region::View;
@@ -166,9 +166,14 @@ fn of_class(
     let Some(sharp) = sharp(&view, class)? else {
         return Ok(None);
     };
+    let prepared = asked.integrator.prepare(&view.entry);
     let truth = Truth {
         sharp,
-        expected: expected(&view, class, technique, kernel, request.bandwidths)?,
+        expected: aimed(
+            expected(&view, class, technique, kernel, request.bandwidths)?,
+            prepared.as_ref(),
+            request.bandwidths,
+        ),
     };
     if truth.expected.iter().all(|e| e.mean.value <= 0.0) {
         return Ok(None);
@@ -184,7 +189,6 @@ fn of_class(
         .iter()
         .map(|s| ((total as f64 * s / f64::from(replicates)) as u64).max(1))
         .collect();
-    let prepared = asked.integrator.prepare(&view.entry);
     let seeds = Seeds::new(asked.seed, &asked.entry.name, asked.integrator.name());
     let rows = at_bandwidths(
         prepared.as_ref(),

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::region::View;
 use crate::expectation::Interpolation;
+use crate::integrators::Prepared;
 
 /// Relative tolerance of means: a hundredth of a bias of 1e-4.
 const TOLERANCE: f64 = 1e-6;
@@ -102,6 +103,19 @@ pub fn expected(
         e.second_moment.error *= shared;
     }
     Ok(all)
+}
+
+/// The same for photons that are drawn from a part of the emission only.
+pub fn aimed(mut all: Vec<Expected>, prepared: &dyn Prepared, bandwidths: &[f64]) -> Vec<Expected> {
+    for (e, &b) in all.iter_mut().zip(bandwidths) {
+        let share = prepared.share_of_emission(b);
+        if share > 0.0 {
+            e.second_moment.value *= share;
+            e.second_moment.error *= share;
+            e.hit = e.hit.map(|p| p / share);
+        }
+    }
+    all
 }
 
 /// The same as if each camera path had photons of its own.

@@ -30,7 +30,7 @@ impl Aim {
 
 /// From a point of a square to a pair of uniform numbers. Areas are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Chart {
+pub(in crate::integrators) enum Chart {
     /// The point itself: a cross-section of a beam.
     #[default]
     Plane,
@@ -74,7 +74,7 @@ fn disc(a: f64, b: f64) -> (f64, f64) {
 
 /// Cells of a grid of 2^level rows and columns on a chart.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Part {
+pub(in crate::integrators) struct Part {
     chart: Chart,
     level: u32,
     cells: Vec<[u32; 2]>,
@@ -98,18 +98,18 @@ impl Part {
         1.0 / f64::from(1_u32 << level)
     }
 
-    pub(super) fn share(&self) -> f64 {
+    pub(in crate::integrators) fn share(&self) -> f64 {
         let side = Part::side(self.level);
         self.cells.len() as f64 * side * side
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(in crate::integrators) fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
     /// A pair of uniform numbers, moved into the part: the first digits of one choose the cell.
     #[inline(always)]
-    pub(super) fn place(&self, u: f64, v: f64) -> (f64, f64) {
+    pub(in crate::integrators) fn place(&self, u: f64, v: f64) -> (f64, f64) {
         let (column, row) = self.point(u, v);
         self.chart.numbers(column, row)
     }
@@ -169,7 +169,7 @@ impl Part {
 
 /// The part of the unit square in which paths contribute at the width `target`. `hits` makes the test of a pair of numbers
 /// at a width; what it accepts must shrink with the width. The search begins at `widest`.
-pub(super) fn search<'a>(
+pub(in crate::integrators) fn search<'a>(
     chart: Chart,
     target: f64,
     widest: f64,

@@ -23,7 +23,7 @@
 //! Source: [Kaplanyan & Dachsbacher 2013] for the mollified connection. Random numbers come from (seed, iteration,
 //! path) alone: a run has the same bits on any thread.
 
-mod aim;
+pub(super) mod aim;
 mod sample;
 mod sums;
 
