@@ -5,6 +5,7 @@ use core::fmt::Debug;
 
 use libm::{cos, sin, sqrt, tan};
 
+use super::link::Again;
 use crate::vector::{Vec3, vec3};
 
 /// A point of a surface.
@@ -32,6 +33,16 @@ pub(in crate::bandwidth) trait Surface: Debug + Send + Sync {
     /// in the way. Of a surface that sees itself nowhere both are 1.
     fn free(&self, _s: &Vec3<f64>, _normal: &Vec3<f64>, _legs: &Legs) -> [f64; 2] {
         [1.0; 2]
+    }
+
+    /// Number of conditions under which a ray that leaves the surface meets it again; 0 if it never does.
+    fn again_conditions(&self) -> usize {
+        0
+    }
+
+    /// Where a ray that leaves `s` on the side of its normal meets the surface again.
+    fn again(&self, _s: &Vec3<f64>, _normal: &Vec3<f64>, _out: &Vec3<f64>) -> Option<Again> {
+        None
     }
 }
 
@@ -152,6 +163,21 @@ impl Surface for SphereCap {
             any(&[off, chord - length])
         })
     }
+
+    fn again_conditions(&self) -> usize {
+        usize::from(self.side < 0.0)
+    }
+
+    fn again(&self, s: &Vec3<f64>, normal: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let (axis, cos_rim) = self.whole;
+        let length = 2.0 * self.radius * out.dot(*normal);
+        let p = *s + *out * length;
+        let on = (p - self.center).dot(axis) / self.radius - cos_rim;
+        Some(Again {
+            length,
+            conditions: [on, 1.0, 1.0],
+        })
+    }
 }
 
 /// A vertical wall over an arc of a circle, or part of it, by azimuth and height.
@@ -199,6 +225,25 @@ impl Surface for Cylinder {
             let t = 2.0 * self.radius * (d.x * normal.x + d.y * normal.y) / plan;
             let along = (s.x + d.x * t - self.center[0]) / self.radius;
             any(&[edge - along, s.z + d.z * t - self.height, t - length])
+        })
+    }
+
+    fn again_conditions(&self) -> usize {
+        if self.side < 0.0 && self.half_arc > 0.0 {
+            2
+        } else {
+            0
+        }
+    }
+
+    fn again(&self, s: &Vec3<f64>, normal: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let plan = out.x * out.x + out.y * out.y;
+        let length = 2.0 * self.radius * (out.x * normal.x + out.y * normal.y) / plan;
+        let along = (s.x + out.x * length - self.center[0]) / self.radius;
+        let below = self.height - (s.z + out.z * length);
+        Some(Again {
+            length,
+            conditions: [along - cos(self.half_arc), below, 1.0],
         })
     }
 }
@@ -310,6 +355,29 @@ impl<F: Fn([f64; 2]) -> (f64, [f64; 2], [f64; 2]) + Send + Sync> Surface for Hei
             any(&[off, through, t - length, -t])
         })
     }
+
+    fn again_conditions(&self) -> usize {
+        match self.dish {
+            Some((_, _, [inner, _])) => 1 + usize::from(inner > 0.0),
+            None => 0,
+        }
+    }
+
+    /// Inside a paraboloid a ray meets it again at a finite distance, unless it is along the axis.
+    fn again(&self, s: &Vec3<f64>, _: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let ([cx, cy], f, [inner, outer]) = self.dish?;
+        let (x, y) = (s.x - cx, s.y - cy);
+        let plan = out.x * out.x + out.y * out.y;
+        let length = -(4.0 * f * out.z + 2.0 * (x * out.x + y * out.y)) / plan;
+        let (x, y) = (x + out.x * length, y + out.y * length);
+        let square = x * x + y * y;
+        // Within −1 and 1 however far that is.
+        let within = |r: f64| (r * r - square) / (r * r + square);
+        Some(Again {
+            length,
+            conditions: [within(outer), -within(inner), 1.0],
+        })
+    }
 }
 
 /// A conic of revolution about the vertical through a focus, by the direction from it, in stereographic projection from below:
@@ -373,6 +441,21 @@ impl Surface for FocalConic {
             any(&[z - (s.z + d.z * t), t - length, -t])
         })
     }
+
+    fn again_conditions(&self) -> usize {
+        usize::from(!self.screen && self.alpha > 0.0)
+    }
+
+    fn again(&self, s: &Vec3<f64>, _: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let p = *s - self.focus;
+        let b = self.beta * out.z;
+        let length = -2.0 * (p.dot(*out) + p.length() * b) / ((1.0 - b) * (1.0 + b));
+        let above = s.z + out.z * length - self.rim_at[0];
+        Some(Again {
+            length,
+            conditions: [above, 1.0, 1.0],
+        })
+    }
 }
 
 /// A vertical wall over the arc r = p/(1 + e cos θ), |θ| ≤ half arc, about a focus, lit from inside; by θ and height.
@@ -422,5 +505,31 @@ impl Surface for ConicWall {
             let off = end * libm::hypot(x, y) - (x * ax + y * ay);
             any(&[off, s.z + d.z * t - self.height, t - length, -t])
         })
+    }
+
+    fn again_conditions(&self) -> usize {
+        // On a parabola or a hyperbola a ray may go out between the arms.
+        if self.eccentricity < 1.0 { 2 } else { 3 }
+    }
+
+    fn again(&self, s: &Vec3<f64>, _: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let ([ax, ay], e) = (self.axis, self.eccentricity);
+        let p = [s.x - self.focus[0], s.y - self.focus[1]];
+        let plan = out.x * out.x + out.y * out.y;
+        let along = e * (out.x * ax + out.y * ay);
+        let way = p[0] * out.x + p[1] * out.y + libm::hypot(p[0], p[1]) * along;
+        let rest = plan - along * along;
+        let length = -2.0 * way / rest;
+        let (x, y) = (p[0] + out.x * length, p[1] + out.y * length);
+        let on = (x * ax + y * ay) / libm::hypot(x, y) - cos(self.half_arc);
+        let below = self.height - (s.z + out.z * length);
+        let below = below / libm::hypot(1.0, below);
+        let conditions = if e < 1.0 {
+            [on, below, 1.0]
+        } else {
+            // The same sign as the length, and no pole.
+            [-way * rest, on, below]
+        };
+        Some(Again { length, conditions })
     }
 }

@@ -1,6 +1,7 @@
 //! The light of an entry as families of paths about a floor point, each with its offset from a perfect path.
 
-use crate::bandwidth::chart::connection::{Caustic, Connection, Link, Receiver};
+use crate::bandwidth::chart::connection::{Caustic, Connection};
+use crate::bandwidth::chart::link::{Case, Link, Receiver};
 use crate::bandwidth::chart::merging::Merging;
 use crate::bandwidth::chart::{Integrand, MARGINS, scenes};
 use crate::bandwidth::kernel::Profile;
@@ -208,7 +209,7 @@ impl Family {
                     convention: self.convention,
                     radius: WIDTH,
                     kernel: self.kernel,
-                    escapes: None,
+                    case: Case::LANDS,
                 };
                 Map::Linked(
                     connect(caustic, Technique::Light, None),
