@@ -19,6 +19,7 @@ pub(super) mod merging;
 pub(super) mod scenes;
 mod star;
 mod surfaces;
+mod walls;
 
 pub(super) use cutter::integrate as integrate_over;
 

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use libm::{acos, atan2, cos, hypot, sin, tan};
 
 use super::connection::{Caustic, Interaction, Source};
-use super::surfaces::{
-    ConicWall, Cylinder, FocalConic, HeightField, Level, Rectangle, SphereCap, Surface, frame_of,
-};
+use super::surfaces::{FocalConic, HeightField, Level, Rectangle, SphereCap, Surface, frame_of};
+use super::walls::{ConicWall, Cylinder};
 use crate::bandwidth::light::photons as flux_of;
 use crate::class::PathClass;
 use crate::kinds::flat_interface::FlatInterface;
