@@ -91,8 +91,9 @@ proptest! {
         let Some(x) = lit(&entry, rank) else { return Ok(()) };
         let s = study(&entry, technique, kernel);
         for (class, law) in s.laws(x[0], x[1]).into_iter().enumerate() {
+            // Only at the foot of a wall a linked bandwidth may have none.
             let Some(law) = law else {
-                prop_assert!(false, "{} {} {:?}", SCENES[scene], technique, x);
+                prop_assert!(technique == Technique::Linked, "{} {} {:?}", SCENES[scene], technique, x);
                 continue;
             };
             prop_assume!(law.place == Place::Smooth);
@@ -156,153 +157,6 @@ fn on_an_edge_the_mean_tends_to_half() {
             "{t} {coarse} {fine} {law:?}"
         );
     }
-}
-
-/// At the foot of a wall a linked distance vanishes: its share of the bias is of order r², at lit points and in the dark, with the
-/// next term at r³, which halving r and halving it again takes out. Without the foot's share the coefficients would be off by 3 % and
-/// more, and 0 in the dark.
-#[test]
-fn the_foot_of_a_wall_has_its_share_of_a_linked_bias() {
-    for (name, x, kernel, is_lit) in [
-        ("pillar", [-0.812, -0.978], Kernel::Cone, true),
-        ("pillar", [-0.99, -1.2], Kernel::Epanechnikov, true),
-        ("cup", [0.29, 0.044], Kernel::Cone, true),
-        ("conic-wall", [0.1, 0.3], Kernel::VonMisesFisher, true),
-        ("cup", [0.85, 0.5], Kernel::Cone, false),
-    ] {
-        let entry = entry::load(name).unwrap();
-        let s = study(&entry, Technique::Linked, kernel);
-        let law = s.laws(x[0], x[1])[0].unwrap();
-        let limit = law.limit.unwrap();
-        println!("{name} {x:?} {law:?}");
-        let is_smooth = (law.place, law.order) == (Place::Smooth, Some(2.0)) && law.roots > 0;
-        let is_dark = (law.place, law.order, limit) == (Place::Dark, Some(2.0), 0.0);
-        assert!(if is_lit { is_smooth } else { is_dark });
-        let a = 0.02 * law.reach.min(1.0);
-        let [f, g, h] = [a, 0.5 * a, 0.25 * a].map(|r| (mean(&s, 0, x, r).0 - limit) / (r * r));
-        let [coarse, fine] = [2.0 * g - f, 2.0 * h - g];
-        let found = (4.0 * fine - coarse) / 3.0;
-        let off = (found / law.coefficient - 1.0).abs();
-        println!(
-            "{name} {kernel}: {f} {g} {h} → {found}, law {}",
-            law.coefficient
-        );
-        assert!(off < 2e-3, "{name} {x:?} {found} {law:?}");
-        if !is_lit {
-            let second = s.moments(0, x, a, 1e-8).unwrap().second_moment.value;
-            assert!(
-                (second / law.second_moment(a) - 1.0).abs() < 0.05,
-                "{second} {law:?}"
-            );
-        }
-    }
-}
-
-/// At the corner of a mirror the mean tends to the share of directions inside, which is that of the angle that the corner has among
-/// the offsets: not a quarter. Against exact expectations, and the share against a count of directions.
-#[test]
-fn at_a_corner_the_mean_tends_to_the_share_of_directions() {
-    let entry = entry::load("mirror-wall").unwrap();
-    let Kind::PlanarMirror(scene) = &entry.kind else {
-        panic!("mirror-wall is a plane mirror");
-    };
-    // From the light's image through the upper corner to the floor.
-    let (image, corner) = ([0.25, 2.0, 2.0], [0.75, 1.0, 1.125]);
-    assert_eq!(scene.light.position, [0.25, 0.0, 2.0]);
-    let t = image[2] / (image[2] - corner[2]);
-    let x = [0, 1].map(|k| image[k] + t * (corner[k] - image[k]));
-    let mut wide = scene.clone();
-    (wide.mirror.half_width, wide.mirror.half_height) = (40.0, 40.0);
-    let e0 = PlanarSetting::of_entry(&Entry {
-        kind: Kind::PlanarMirror(wide),
-        ..entry.clone()
-    })
-    .ok()
-    .flatten()
-    .map(|s| {
-        Expectation::new(s, Technique::Merge, Kernel::Disc, &[0.1])
-            .unwrap()
-            .sharp([x[0], x[1], 0.0])
-    });
-    for (t, k) in [
-        (Technique::Camera, Kernel::Cone),
-        (Technique::Light, Kernel::Epanechnikov),
-        (Technique::Merge, Kernel::Disc),
-    ] {
-        let s = study(&entry, t, k);
-        let law = s.laws(x[0], x[1])[0].unwrap();
-        assert_eq!((law.place, law.order), (Place::Edge, Some(1.0)), "{t}");
-        let limit = law.limit.unwrap();
-        let share = limit / e0.unwrap();
-        println!("{t}: share {share}");
-        assert!(
-            share > 0.05 && share < 0.45 && (share - 0.25).abs() > 0.005,
-            "{t} {share}"
-        );
-        let slope = |a: f64| (mean(&s, 0, x, a).0 - limit) / a;
-        let (coarse, fine) = (slope(2e-2) - law.coefficient, slope(1e-2) - law.coefficient);
-        assert!(
-            fine.abs() < 0.02 * limit && (coarse / fine - 2.0).abs() < 0.1,
-            "{t} {coarse} {fine} {law:?}"
-        );
-    }
-}
-
-/// An ellipsoid with the floor through its other focus: all its light in one point. The law is what the kernel has at its top times
-/// the flux, R I times the mirror's solid angle.
-#[test]
-fn all_light_of_an_ellipsoid_is_in_its_focus() {
-    let mut entry = entry::load("ellipsoid").unwrap();
-    let Kind::ConicMirrors(scene) = &mut entry.kind else {
-        panic!("ellipsoid is a conic mirror");
-    };
-    let down = scene.conic.image_z;
-    scene.conic.image_z -= down;
-    scene.conic.rim_z -= down;
-    let c = scene.conic.clone();
-    let (rise, radius) = (c.rim_z - c.light_z(), c.rim_radius());
-    let flux = scene.light.intensity
-        * c.reflectance
-        * core::f64::consts::TAU
-        * (1.0 - rise / libm::hypot(rise, radius));
-    assert!(entry.validate().is_ok(), "{:?}", entry.validate());
-    let x = c.center;
-    for (t, k, top) in [
-        (Technique::Merge, Kernel::Disc, 1.0),
-        (Technique::Merge, Kernel::Epanechnikov, 2.0),
-        (Technique::Camera, Kernel::Cone, 1.0),
-        (Technique::Light, Kernel::VonMisesFisher, 2.0),
-    ] {
-        let s = study(&entry, t, k);
-        let law = s.laws(x[0], x[1])[0].unwrap();
-        assert_eq!(
-            (law.place, law.order, law.squared_order),
-            (Place::PointFocus, Some(-2.0), 4.0)
-        );
-        if t == Technique::Merge {
-            let exact = top * flux / core::f64::consts::PI;
-            assert!(
-                (law.coefficient / exact - 1.0).abs() < 1e-5,
-                "{t} {k} {exact} {law:?}"
-            );
-        }
-        let m = s.moments(0, x, 1e-3, 1e-7).unwrap();
-        let [mean, second] = [
-            m.mean.value / law.mean(1e-3),
-            m.second_moment.value / law.second_moment(1e-3),
-        ];
-        assert!(
-            (mean - 1.0).abs() < 1e-4 && (second - 1.0).abs() < 1e-4,
-            "{t} {k} {mean} {second}"
-        );
-        // As an image forms: beside it, beyond the kernel, there is nothing.
-        let beside = mean_at(&s, [x[0] + 0.02, x[1]], 1e-2);
-        assert!(t != Technique::Merge || beside == 0.0, "{beside}");
-    }
-}
-
-fn mean_at(s: &Study, x: [f64; 2], b: f64) -> f64 {
-    s.moments(0, x, b, 1e-9).unwrap().mean.value
 }
 
 /// At the nephroid's cusp, at half the radius, rounding hides the place: there is a law of a cusp or none, never that of a fold, whose

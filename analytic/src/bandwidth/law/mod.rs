@@ -148,6 +148,8 @@ const LOOKS: [usize; 4] = [16, 32, 64, 128];
 const AGREES: f64 = 1e-6;
 /// A point is on a caustic if it is nearer than this, in natural units of the offset.
 const ON: f64 = 1e-8;
+/// Linked distances below this are those of a foot [m].
+const FOOT: f64 = 1e-6;
 /// Rings have more degenerate roots than a fold or a cusp.
 const RING: usize = 3;
 
@@ -253,6 +255,11 @@ impl SmallBandwidth {
                 (foot.mean, foot.squared) = (foot.mean + share.mean, foot.squared + share.squared);
             }
             let mut found = find(map, cells, unit);
+            // At a foot the offset vanishes with the distance, and no path is perfect.
+            let is_linked = |u: &[f64; 2]| map.linked_distance(*u) > FOOT;
+            found.regular.retain(is_linked);
+            found.degenerate.retain(is_linked);
+            found.approaches.retain(|(u, _)| is_linked(u));
             // Roots come in pairs at a fold: the other one is across.
             let mut folds = Vec::new();
             for k in 0..found.regular.len() {
