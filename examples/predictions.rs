@@ -1,12 +1,16 @@
 //! Regularized estimators at probes, held to their exact expectation at finite bandwidth: mean and second moment, for `camera`
-//! (path tracing), `light` and `merge` (photon mapping) on several scenes, and the three conventions of a linked bandwidth.
+//! (path tracing), `light` and `merge` (photon mapping) on several scenes, and the three conventions of a linked bandwidth from either
+//! side.
 //!
 //! Each line is a probe in the lit part of a scene's floor. The mean of aimed samples is divided by the prediction;
 //! `equivalent` means that the ratio is within the margin of 1 by 4.9 standard errors on both sides (a false one has a probability below
 //! 5e-7), `different` that it is more than 4.9 standard errors from 1, and so is the second moment's. The truth at bandwidth zero is
 //! printed as a ratio as well: what the bias would look like to a test that knows the limit only.
 //!
-//! `cargo run --release --example predictions`
+//! For each scene and side the smallest relative difference between the predictions of two conventions is printed as well: where it is
+//! beyond twice the margin, `equivalent` three times means that the measurement tells them apart.
+//!
+//! `cargo run --release --example predictions -- [SCENE]...`
 
 use nephroid::entry;
 use nephroid::integrators::Kernel as Shape;
@@ -102,7 +106,11 @@ fn main() {
         "scene", "technique", "d", "width", "measured", "±", "second", "limit", "paths"
     );
     let (mut wrong, mut open) = (0, 0);
+    let asked: Vec<String> = std::env::args().skip(1).collect();
     for name in ["mirror-wall", "cup", "pillar", "pool", "dome"] {
+        if !(asked.is_empty() || asked.iter().any(|a| a == name)) {
+            continue;
+        }
         let scene = entry::load(name).expect("a catalogue entry");
         let class = PathClass::LSDE;
         let x = probe(&scene, class);
@@ -116,12 +124,17 @@ fn main() {
             (Technique::Light, Side::Light, Convention::Exact, None),
             (Technique::Merge, Side::Merge, Convention::Exact, None),
         ];
-        let linked = [
-            (Convention::Exact, Distance::Exact),
-            (Convention::Vertex, Distance::Receiver),
-            (Convention::Light, Distance::Light),
-        ]
-        .map(|(c, d)| (Technique::Linked, Side::Light, c, Some(d)));
+        let sides = [Side::Light, Side::Camera];
+        let linked = sides.into_iter().flat_map(|side| {
+            [
+                (Convention::Exact, Distance::Exact),
+                (Convention::Vertex, Distance::Receiver),
+                (Convention::Light, Distance::Light),
+            ]
+            .map(|(c, d)| (Technique::Linked, side, c, Some(d)))
+        });
+        // Of the predictions by convention: side, bandwidth, mean.
+        let mut apart: Vec<(Side, f64, f64)> = Vec::new();
         for (technique, side, convention, distance) in plain.into_iter().chain(linked) {
             if distance.is_some() && name != "dome" && name != "pillar" {
                 continue;
@@ -145,10 +158,17 @@ fn main() {
                     convention,
                     bandwidths: &[bandwidth],
                 };
-                let expectation =
-                    EntryExpectation::new(&scene, estimator, area).expect("an expectation");
+                let expectation = if distance.is_some() && side == Side::Camera {
+                    EntryExpectation::linked_from_camera(&scene, kernel, convention, &[bandwidth])
+                } else {
+                    EntryExpectation::new(&scene, estimator, area)
+                }
+                .expect("an expectation");
                 let m = expectation.at(x[0], x[1], 1e-8)[0];
                 let predicted = [m.mean.value, m.second_moment.value];
+                if distance.is_some() {
+                    apart.push((side, bandwidth, predicted[0]));
+                }
                 let line = measure(&sampler, bandwidth, x, predicted, margin);
                 let off = f64::abs(line.mean - 1.0);
                 let verdict = if off > SIGMAS * line.error {
@@ -163,9 +183,14 @@ fn main() {
                 } else {
                     "equivalent"
                 };
+                let shown = match (distance, side) {
+                    (Some(_), Side::Camera) => "linked/c",
+                    (Some(_), _) => "linked/l",
+                    _ => technique.name(),
+                };
                 println!(
                     "{name:<12} {:<10} {:<8} {bandwidth:>6} {:>9.5} {:>9.5} {:>9.4} {:>8.4} {:>9}  {verdict}",
-                    technique.name(),
+                    shown,
                     distance.map_or("", |_| convention.name()),
                     line.mean,
                     line.error,
@@ -173,6 +198,24 @@ fn main() {
                     predicted[0] / limit,
                     line.paths,
                 );
+            }
+        }
+        for (side, what) in [(Side::Light, "light"), (Side::Camera, "camera")] {
+            for (bandwidth, margin) in MARGINS {
+                let means: Vec<f64> = apart
+                    .iter()
+                    .filter(|a| a.0 == side && a.1 == bandwidth)
+                    .map(|a| a.2)
+                    .collect();
+                let pairs = (0..means.len()).flat_map(|k| (0..k).map(move |l| (k, l)));
+                let least = pairs
+                    .map(|(k, l)| f64::abs(means[k] / means[l] - 1.0))
+                    .reduce(f64::min);
+                if let Some(least) = least {
+                    println!(
+                        "{name:<12} conventions from the {what}, radius {bandwidth}: at least {least:.4} apart, margin {margin}"
+                    );
+                }
             }
         }
     }

@@ -81,7 +81,7 @@ fn only_sampled_classes_are_in_the_file() {
 fn what_cannot_be_run_says_why_and_writes_nothing() {
     let target = file("refused");
     let shown = target.to_str().unwrap();
-    let cases: [(&[&str], i32, &str); 10] = [
+    let cases: [(&[&str], i32, &str); 11] = [
         (
             &["pool", "--integrator", "pt"],
             4,
@@ -130,10 +130,21 @@ fn what_cannot_be_run_says_why_and_writes_nothing() {
                 "--integrator",
                 "pm",
                 "--schedule",
-                "0.3*n^-0.2",
+                "0.3*m^-0.2",
             ],
             2,
-            "ppm(R1,A)",
+            "column 5: found `m`",
+        ),
+        (
+            &[
+                "mirror-wall",
+                "--integrator",
+                "pt-reg",
+                "--schedule",
+                "4*n^(-1/6)",
+            ],
+            2,
+            "4 at n = 1",
         ),
         (
             &[

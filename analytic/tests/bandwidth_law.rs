@@ -1,5 +1,6 @@
 //! The law of small bandwidths against closed forms, and against exact expectations at two small bandwidths.
 
+mod law_places;
 mod mirror_entry;
 
 use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};
@@ -8,6 +9,8 @@ use nephroid_analytic::bandwidth::{Convention, Kernel, Technique};
 use nephroid_analytic::kinds::flat_interface::FlatInterface;
 use nephroid_analytic::kinds::sphere_mirror::{Light, Side, SphereMirror};
 use nephroid_analytic::vector::vec3;
+
+use core::f64::consts::PI;
 
 const ANGLES: [Technique; 3] = [Technique::Camera, Technique::Light, Technique::Symmetric];
 
@@ -233,6 +236,73 @@ fn interface_axis_is_the_closed_form() {
             "{t} {found} {kappa}"
         );
     }
+}
+
+/// On the critical circle of an inner reflection the irradiance has a kink like a square root inside. Against the closed form of the
+/// irradiance, averaged over the kernel by arcs about the light's axis: the radii of the circle's two sides by their own substitution.
+#[test]
+fn on_a_critical_circle_the_bias_is_of_order_one_half() {
+    let form = FlatInterface {
+        surface_z: 1.0,
+        index: 1.333,
+        light: vec3(0.3, -0.2, 0.4),
+        intensity: 2.1,
+        receiver_z: -0.1,
+    };
+    let circle = closed::CriticalCircle::of(&form).unwrap();
+    // theory/scenes.md: X_c = D/√(n² − 1), D the height of the folded way.
+    assert!((circle.radius / (1.7 / libm::sqrt(1.333 * 1.333 - 1.0)) - 1.0).abs() < 1e-14);
+    let irradiance = |radius: f64| form.caustic(0.3 + radius, -0.2).value;
+    let outside = irradiance(circle.radius * (1.0 + 1e-12));
+    assert!((outside / circle.irradiance - 1.0).abs() < 1e-9);
+    let rule = nephroid_analytic::quadrature::gauss_legendre(64);
+    let averaged = |kernel: Kernel, r: f64| {
+        let x = circle.radius;
+        let height = |d: f64| match kernel {
+            Kernel::Disc => 1.0 / (PI * r * r),
+            _ => 2.0 / (PI * r * r) * (1.0 - d * d / (r * r)),
+        };
+        // Over the arc of a radius that is within the kernel.
+        let arc = |radius: f64| {
+            let end = libm::acos(((radius * radius + x * x - r * r) / (2.0 * radius * x)).min(1.0));
+            let along = |t: f64| {
+                let phi = end * t;
+                let s = libm::sin(0.5 * phi);
+                let d = libm::sqrt((radius - x) * (radius - x) + 4.0 * radius * x * s * s);
+                height(d) * radius * end
+            };
+            rule.iter().map(|(t, w)| w * along(*t)).sum::<f64>()
+        };
+        let side = |sign: f64| -> f64 {
+            // X = X_c ± r v² (2 − v²): smooth at the kink, and at the kernel's end.
+            let part = |v: f64| {
+                let s = v * v * (2.0 - v * v);
+                let radius = x + sign * r * s;
+                irradiance(radius) * arc(radius) * r * 4.0 * v * (1.0 - v * v)
+            };
+            rule.iter()
+                .map(|(t, w)| 0.5 * w * part(0.5 * (1.0 + t)))
+                .sum()
+        };
+        side(-1.0) + side(1.0)
+    };
+    for kernel in [Kernel::Disc, Kernel::Epanechnikov] {
+        let slope = |r: f64| (averaged(kernel, r) - circle.irradiance) / libm::sqrt(r);
+        let exact = circle.coefficient(kernel);
+        // The next term is √r of this: both vanish together, and what is left without it.
+        let [coarse, fine] = [1e-3, 1e-5].map(|r| slope(r) / exact - 1.0);
+        let rest = (10.0 * fine - coarse) / 9.0;
+        assert!(
+            rest.abs() < 1e-3 && (fine / coarse - 0.1).abs() < 0.01,
+            "{kernel} {coarse} {fine}"
+        );
+    }
+    let air = FlatInterface {
+        light: vec3(0.3, -0.2, 1.4),
+        receiver_z: 1.1,
+        ..form
+    };
+    assert!(closed::CriticalCircle::of(&air).is_none());
 }
 
 mod random {

@@ -3,6 +3,7 @@
 use super::rates;
 use crate::error::Error;
 use crate::integrators::Schedule;
+use crate::integrators::schedule::ALLOWED;
 use crate::rates::converge::{
     BIAS_HALF_WIDTH, ITERATIONS, REPLICATES, Request, VARIANCE_HALF_WIDTH, study,
 };
@@ -18,9 +19,9 @@ use crate::rates::{converge_json, converge_svg, converge_table};
 pub struct Args {
     #[command(flatten)]
     options: rates::Options,
-    /// Bandwidth per iteration: a number, a list `0.3,0.2,0.1` whose last value stays, or `ppm(R1,A)`:
-    /// r²ᵢ₊₁ = r²ᵢ (i + A)/(i + 1). Methods without bias take any.
-    #[arg(long, value_name = "EXPR", value_parser = str::parse::<Schedule>)]
+    /// Bandwidth per iteration n = 1, 2, …: a number, a list `0.3,0.2,0.1` whose last value stays, or an expression such as
+    /// `0.2*n^(-1/6)` or `ppm(R1, A)`, as in `nephroid schedule`. Methods without bias take any.
+    #[arg(long, value_name = "EXPR", value_parser = schedule)]
     schedule: Schedule,
     /// Iterations: a power of two from 4 to 65536.
     #[arg(long, value_name = "N", default_value_t = ITERATIONS, value_parser = iterations)]
@@ -37,6 +38,11 @@ pub struct Args {
     /// The same for the slope of the squared bias.
     #[arg(long, value_name = "H", default_value_t = BIAS_HALF_WIDTH, value_parser = rates::half_width, allow_negative_numbers = true)]
     bias_half_width: f64,
+}
+
+fn schedule(text: &str) -> Result<Schedule, String> {
+    text.parse()
+        .map_err(|error| format!("{error}; allowed: {ALLOWED}"))
 }
 
 fn iterations(text: &str) -> Result<u32, String> {

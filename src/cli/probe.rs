@@ -53,6 +53,15 @@ pub struct Args {
         default_value = "exact"
     )]
     convention: String,
+    /// Side from which a linked path is built: light, or camera (then `exact` ends at what the exact ray meets first, on its way past
+    /// the light, and `vertex` at the floor point).
+    #[arg(
+        long,
+        value_name = "SIDE",
+        requires = "technique",
+        default_value = "light"
+    )]
+    side: Side,
     /// Cross-section over which the photons of parallel light are uniform, in square metres: second moments of light, linked
     /// and merge are proportional to it.
     #[arg(long, value_name = "A", requires = "technique", default_value_t = 1.0)]
@@ -63,6 +72,15 @@ pub struct Args {
     /// Print JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// Where a linked path begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Side {
+    /// At the light.
+    Light,
+    /// At the floor point.
+    Camera,
 }
 
 /// One line of the answer.
@@ -195,8 +213,20 @@ fn regularized(
             allowed: "greater than 0, up to 1e12 square metres".to_owned(),
         }));
     }
+    if args.side == Side::Camera && technique != Technique::Linked {
+        return Err(option(InvalidParameter {
+            key: "side".to_owned(),
+            found: format!("camera with {technique}"),
+            allowed: "camera with the technique linked".to_owned(),
+        }));
+    }
     Ok(match &entry.kind {
         Kind::Diffuse(_) => None,
+        _ if args.side == Side::Camera => {
+            let radii = &args.bandwidth;
+            let e = EntryExpectation::linked_from_camera(entry, kernel, convention, radii);
+            Some(Regularized::General(Box::new(e.map_err(option)?)))
+        }
         Kind::PlanarMirror(_) if convention == Convention::Exact => {
             let setting = PlanarSetting::of_entry(entry).map_err(option)?;
             setting
@@ -377,6 +407,10 @@ fn as_json(scene: &str, args: &Args, answers: &[Answer]) -> String {
         top["bandwidths"] = json!(args.bandwidth);
         top["kernel"] = json!(args.kernel);
         top["convention"] = json!(args.convention);
+        top["side"] = json!(match args.side {
+            Side::Light => "light",
+            Side::Camera => "camera",
+        });
         top["beam_area"] = json!(args.beam_area);
     }
     top["answers"] = json!(answers);

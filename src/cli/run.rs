@@ -9,10 +9,13 @@ use crate::error::Error;
 use crate::exr_output::{metadata, write_exr};
 use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
+use crate::integrators::schedule::ALLOWED;
 use crate::integrators::{
     Integrator, Kernel, Plan, Schedule, Settings, Technique, Treatment, by_name,
 };
 use crate::{entry, exit};
+
+use super::schedule::at_column;
 
 /// The bandwidth where none is given, an angle [rad] or a radius [m].
 const DEFAULT_BANDWIDTH: f64 = 0.2;
@@ -38,8 +41,8 @@ pub struct Args {
     /// for ppm. Default: 0.2.
     #[arg(long, value_name = "A", conflicts_with = "schedule")]
     bandwidth: Option<f64>,
-    /// Bandwidth per iteration: a number, a list `0.3,0.2,0.1` whose last value stays, or `ppm(R1,A)`:
-    /// r²ᵢ₊₁ = r²ᵢ (i + A)/(i + 1).
+    /// Bandwidth per iteration n = 1, 2, …: a number, a list `0.3,0.2,0.1` whose last value stays, or an expression such as
+    /// `0.2*n^(-1/6)` or `ppm(R1, A)`, r²ₙ₊₁ = r²ₙ (n + A)/(n + 1), as in `nephroid schedule`.
     #[arg(long, value_name = "EXPR")]
     schedule: Option<String>,
     /// Paths per iteration: what a step of a schedule is. Default: 262144, or four per pixel if that is more.
@@ -71,7 +74,6 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         )
     })?;
     let plan = integrator.plan(&entry);
-    let schedule = schedule(args, integrator.as_ref(), &plan)?;
     let mut film = Film::new(
         entry.camera.width,
         entry.camera.height,
@@ -88,6 +90,8 @@ pub fn run(args: &Args) -> Result<u8, Error> {
             &format!("at most {most}: 2^32 iterations"),
         ));
     }
+    let iterations = args.paths.div_ceil(per_iteration.max(1));
+    let schedule = schedule(args, integrator.as_ref(), &plan, iterations)?;
     if plan.iter().all(|c| c.treatment == Treatment::NotSampled) {
         super::print(&format!(
             "{} samples no path class of {}:",
@@ -184,18 +188,24 @@ fn write(
     Ok(())
 }
 
-/// The schedule, within the range of what it is a bandwidth of.
-fn schedule(args: &Args, integrator: &dyn Integrator, plan: &Plan) -> Result<Schedule, Error> {
-    let key = if args.schedule.is_some() {
-        "schedule"
-    } else {
-        "bandwidth"
-    };
-    let schedule = match &args.schedule {
-        Some(text) => text
-            .parse()
-            .map_err(|allowed: String| refused(key, text, &allowed))?,
-        None => integrator.schedule(args.bandwidth.unwrap_or(DEFAULT_BANDWIDTH)),
+/// The schedule, within the range of what it is a bandwidth of in every iteration.
+fn schedule(
+    args: &Args,
+    integrator: &dyn Integrator,
+    plan: &Plan,
+    iterations: u64,
+) -> Result<Schedule, Error> {
+    let (key, schedule) = match &args.schedule {
+        Some(text) => {
+            let schedule = text
+                .parse()
+                .map_err(|e| at_column("--schedule", text, &e, Some(ALLOWED)))?;
+            ("schedule", schedule)
+        }
+        None => (
+            "bandwidth",
+            integrator.schedule(args.bandwidth.unwrap_or(DEFAULT_BANDWIDTH)),
+        ),
     };
     let is_angle = plan
         .iter()
@@ -208,8 +218,11 @@ fn schedule(args: &Args, integrator: &dyn Integrator, plan: &Plan) -> Result<Sch
     } else {
         (1e9, "a radius greater than 0, at most 1e9 [m]")
     };
-    match schedule.values().iter().find(|&&v| !(v > 0.0 && v <= most)) {
-        Some(bad) => Err(refused(key, bad, allowed)),
+    match schedule.first_unfit(iterations, |v| v > 0.0 && v <= most) {
+        Some((n, bad)) if matches!(schedule, Schedule::Expression(_)) => {
+            Err(refused(key, format!("{bad} at n = {n}"), allowed))
+        }
+        Some((_, bad)) => Err(refused(key, bad, allowed)),
         None => Ok(schedule),
     }
 }

@@ -3,7 +3,7 @@
 use nephroid_analytic::schedule::classify::{FiniteRow, optimal_decay};
 use nephroid_analytic::schedule::rate::Rate;
 use nephroid_analytic::schedule::{
-    Classification, Expression, Number, Report, Request, Weights, classify,
+    Classification, Expression, Number, ParseError, Report, Request, Weights, classify,
 };
 use serde_json::{Value, json};
 
@@ -111,19 +111,28 @@ pub fn run(args: &Args) -> Result<u8, Error> {
 /// Reads an expression; an error shows the column in the text.
 fn expression(what: &str, text: &str) -> Result<Expression, Error> {
     text.parse()
-        .map_err(|error: nephroid_analytic::schedule::ParseError| {
-            // Control characters would move the mark.
-            let shown: String = text
-                .chars()
-                .map(|c| if c.is_control() { ' ' } else { c })
-                .collect();
-            let mark = " ".repeat(error.column - 1);
-            Error::Content {
-                file: what.to_owned(),
-                message: format!("column {}: found {}", error.column, error.found),
-                help: format!("expected {}\n{shown}\n{mark}^", error.expected),
-            }
-        })
+        .map_err(|error| at_column(what, text, &error, None))
+}
+
+/// What is wrong with an expression, with a mark at its column.
+pub(super) fn at_column(
+    what: &str,
+    text: &str,
+    error: &ParseError,
+    allowed: Option<&str>,
+) -> Error {
+    // Control characters would move the mark.
+    let shown: String = text
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    let mark = " ".repeat(error.column.saturating_sub(1));
+    let allowed = allowed.map_or(String::new(), |a| format!("\nallowed: {a}"));
+    Error::Content {
+        file: what.to_owned(),
+        message: format!("column {}: found {}", error.column, error.found),
+        help: format!("expected {}\n{shown}\n{mark}^{allowed}", error.expected),
+    }
 }
 
 /// A number or a constant expression such as `1/2`, within a range.

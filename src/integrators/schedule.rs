@@ -1,9 +1,10 @@
-//! Bandwidths over iterations, in the simple forms: fixed, a list, or the recursion of progressive photon mapping.
+//! Bandwidths over iterations: fixed, a list, the recursion of progressive photon mapping, or any expression in the iteration's number.
 
 use core::fmt;
 use core::str::FromStr;
 
 use libm::{exp, sqrt};
+use nephroid_analytic::schedule::{Expression, ParseError};
 
 /// The default of the recursion's parameter.
 pub const DEFAULT_REDUCTION: f64 = 2.0 / 3.0;
@@ -22,40 +23,73 @@ pub enum Schedule {
         /// a, in (0, 1).
         reduction: f64,
     },
+    /// Its value at n = 1 in iteration 0, at n = 2 in iteration 1, …
+    Expression(Expression),
 }
 
 /// What can be written, for messages.
-pub const ALLOWED: &str =
-    "a number, a list such as 0.3,0.2,0.1, or ppm(R1,A) with A greater than 0, less than 1";
+pub const ALLOWED: &str = "a number, a list such as 0.3,0.2,0.1 whose last value stays, or an expression in n = 1, 2, … such as \
+     0.2*n^(-1/6), ppm(R1, A), geometric(A1, G) or max(a, b)";
 
 impl FromStr for Schedule {
-    type Err = String;
+    type Err = ParseError;
 
-    /// Reads what [`fmt::Display`] writes. Values must be finite and positive.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |t: &str| {
-            t.trim()
-                .parse()
-                .ok()
-                .filter(|v: &f64| *v > 0.0 && v.is_finite())
-        };
-        let numbers = |t: &str| t.split(',').map(number).collect::<Option<Vec<f64>>>();
-        let text = text.trim();
-        let inner = text.strip_prefix("ppm(").and_then(|t| t.strip_suffix(')'));
-        let schedule = match inner {
-            Some(inner) => match numbers(inner).as_deref() {
-                Some(&[first, reduction]) if reduction < 1.0 => {
-                    Some(Schedule::Progressive { first, reduction })
-                }
-                _ => None,
-            },
-            None => match numbers(text) {
-                Some(values) if values.len() == 1 => Some(Schedule::Fixed(values[0])),
-                values => values.map(Schedule::List),
-            },
-        };
-        schedule.ok_or_else(|| ALLOWED.to_owned())
+    /// Reads what [`fmt::Display`] writes. Numbers must be finite and positive; of an expression only its form is checked here
+    /// ([`Schedule::first_unfit`]).
+    fn from_str(text: &str) -> Result<Self, ParseError> {
+        let items = items(text);
+        if items.len() > 1 {
+            let values: Result<_, _> = items.into_iter().map(|(at, t)| number(at, t)).collect();
+            return values.map(Schedule::List);
+        }
+        let expression: Expression = text.parse()?;
+        if let Some([first, reduction]) = expression.ppm() {
+            let [first, reduction] = [first.value(), reduction.value()];
+            return Ok(Schedule::Progressive { first, reduction });
+        }
+        match expression.constant().map(|c| c.value()) {
+            Some(value) if value > 0.0 && value.is_finite() => Ok(Schedule::Fixed(value)),
+            Some(value) => Err(ParseError {
+                column: 1 + text.chars().take_while(|c| c.is_whitespace()).count(),
+                found: value.to_string(),
+                expected: "a bandwidth greater than 0".to_owned(),
+            }),
+            None => Ok(Schedule::Expression(expression)),
+        }
     }
+}
+
+/// The parts of a text between the commas that are in no parentheses, with the columns at which they begin.
+fn items(text: &str) -> Vec<(usize, &str)> {
+    let (mut items, mut depth, mut start, mut column) = (Vec::new(), 0_i32, 0, 1);
+    for (k, (at, c)) in text.char_indices().enumerate() {
+        match c {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            ',' if depth == 0 => {
+                items.push((column, &text[start..at]));
+                (start, column) = (at + 1, k + 2);
+            }
+            _ => {}
+        }
+    }
+    items.push((column, &text[start..]));
+    items
+}
+
+/// An item of a list.
+fn number(column: usize, text: &str) -> Result<f64, ParseError> {
+    let value = text.trim().parse().ok();
+    value
+        .filter(|v: &f64| *v > 0.0 && v.is_finite())
+        .ok_or_else(|| ParseError {
+            column: column + text.chars().take_while(|c| c.is_whitespace()).count(),
+            found: match text.trim() {
+                "" => "nothing".to_owned(),
+                found => format!("`{found}`"),
+            },
+            expected: "a number greater than 0, in a list".to_owned(),
+        })
 }
 
 impl fmt::Display for Schedule {
@@ -67,17 +101,22 @@ impl fmt::Display for Schedule {
                 f.write_str(&values.join(","))
             }
             Schedule::Progressive { first, reduction } => write!(f, "ppm({first},{reduction})"),
+            Schedule::Expression(expression) => expression.fmt(f),
         }
     }
 }
 
 impl Schedule {
-    /// The bandwidths that are named, of which none is exceeded.
-    pub fn values(&self) -> &[f64] {
+    /// The first of so many iterations whose bandwidth does not fit: its number n, counted from 1, and that bandwidth.
+    pub fn first_unfit(&self, iterations: u64, fits: impl Fn(f64) -> bool) -> Option<(u64, f64)> {
+        let unfit = |&(_, v): &(u64, f64)| !fits(v);
         match self {
-            Schedule::Fixed(value) => core::slice::from_ref(value),
-            Schedule::List(values) => values,
-            Schedule::Progressive { first, .. } => core::slice::from_ref(first),
+            Schedule::Expression(e) => (1..=iterations).map(|n| (n, e.at(n))).find(unfit),
+            // None exceeds the first.
+            Schedule::Fixed(first) | Schedule::Progressive { first, .. } => {
+                Some((1, *first)).filter(unfit)
+            }
+            Schedule::List(values) => (1..).zip(values.iter().copied()).find(unfit),
         }
     }
 
@@ -95,6 +134,7 @@ impl Schedule {
             Schedule::Progressive { first, reduction } => {
                 first * sqrt(progressive_ratio(iteration, *reduction))
             }
+            Schedule::Expression(expression) => expression.at(u64::from(iteration) + 1),
         }
     }
 }
@@ -150,26 +190,65 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_can_be_read_and_the_rest_is_refused() {
-        for text in ["0.2", "0.3,0.2,0.1", "ppm(0.2,0.5)"] {
+    fn what_is_written_can_be_read_and_the_rest_is_refused_at_its_column() {
+        for text in ["0.2", "0.3,0.2,0.1", "ppm(0.2,0.5)", "geometric(0.3, 0.99)"] {
             assert_eq!(text.parse::<Schedule>().unwrap().to_string(), text);
         }
         for text in [
-            "",
-            "x",
-            "0.2,",
-            "-1",
-            "0",
-            "inf",
-            "nan",
-            "ppm(0.2)",
-            "ppm(0.2,1)",
-            "ppm(0.2,0.5",
-            "ppm(1,2,3)",
-            "pow(1)",
+            "0.2*n^(-1/6)",
+            "max(0.1, 0.3/sqrt(n))",
+            "0.3/(1+log(n))",
+            "at_powers(2, 0.1, 0.3)",
         ] {
-            assert_eq!(text.parse::<Schedule>(), Err(ALLOWED.to_owned()), "{text}");
+            let schedule: Schedule = text.parse().unwrap();
+            assert!(matches!(schedule, Schedule::Expression(_)), "{text}");
+            let again: Schedule = schedule.to_string().parse().unwrap();
+            assert_eq!(again, schedule);
+            for iteration in [0, 1, 9, 100_000] {
+                assert_eq!(again.bandwidth(iteration), schedule.bandwidth(iteration));
+            }
         }
+        for (text, column) in [
+            ("", 1),
+            ("x", 1),
+            ("0.2,", 5),
+            ("0.2, x,0.1", 6),
+            ("0.2,-1", 5),
+            ("-1", 1),
+            ("0", 1),
+            ("inf", 1),
+            ("nan", 1),
+            ("ppm(0.2)", 8),
+            ("ppm(0.2,1)", 9),
+            ("ppm(0.2,0.5", 12),
+            ("ppm(1,2,3)", 8),
+            ("pow(1)", 1),
+            ("0.2*m", 5),
+        ] {
+            let error = text.parse::<Schedule>().unwrap_err();
+            assert_eq!(error.column, column, "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn expressions_start_at_one_and_the_recursion_keeps_its_form() {
+        let schedule: Schedule = "0.3*n^(-1/2)".parse().unwrap();
+        assert_eq!(schedule.bandwidth(0), 0.3);
+        assert!((schedule.bandwidth(3) / 0.15 - 1.0).abs() < 1e-15);
+        let ppm: Schedule = "ppm(0.1, 2/3)".parse().unwrap();
+        let recursion = Schedule::Progressive {
+            first: 0.1,
+            reduction: DEFAULT_REDUCTION,
+        };
+        assert_eq!(ppm, recursion);
+        assert_eq!("1/5".parse::<Schedule>().unwrap(), Schedule::Fixed(0.2));
+        // log(1) = 0, and what is too wide later on.
+        let fits = |v: f64| v > 0.0 && v <= 1.0;
+        let unfit = |text: &str| text.parse::<Schedule>().unwrap().first_unfit(100, fits);
+        assert_eq!(unfit("log(n)"), Some((1, 0.0)));
+        assert_eq!(unfit("0.25*n"), Some((5, 1.25)));
+        assert_eq!(unfit("n^(-1/6)"), None);
+        assert_eq!(unfit("0.3,2"), Some((2, 2.0)));
     }
 
     #[test]

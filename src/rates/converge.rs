@@ -138,6 +138,15 @@ const fn default_paths(technique: Option<Technique>) -> u64 {
 /// # Errors
 /// A region, a kernel, a technique or a bandwidth that does not fit; a kind without exact expectations.
 pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidParameter> {
+    let iterations = u64::from(request.iterations);
+    let is_positive = |v: f64| v > 0.0 && v.is_finite();
+    if let Some((n, found)) = request.schedule.first_unfit(iterations, is_positive) {
+        return Err(InvalidParameter {
+            key: "bandwidth".to_owned(),
+            found: format!("{found} at n = {n}"),
+            allowed: "greater than 0 at every n".to_owned(),
+        });
+    }
     let schedule = bandwidths(request.schedule, request.iterations);
     let low = schedule.iter().copied().fold(f64::INFINITY, f64::min);
     let high = schedule.iter().copied().fold(0.0, f64::max);
@@ -147,7 +156,7 @@ pub fn study(request: &Request) -> Result<(Vec<Study>, Vec<Skipped>), InvalidPar
         vec![high]
     };
     let bandwidths = Bandwidths {
-        named: request.schedule.values(),
+        named: &ends,
         extremes: &ends,
     };
     request

@@ -178,10 +178,10 @@ fn bad_input_names_the_option_and_what_is_allowed() {
                 "--integrator",
                 "ppm",
                 "--schedule",
-                "pow(1)",
+                "0.2*pow(n)",
             ],
             "--schedule",
-            "ppm(R1,A)",
+            "column 5: found `pow`",
         ),
         (
             vec![

@@ -11,7 +11,7 @@ use nephroid_analytic::class::PathClass;
 
 use super::{Change, Changed, LEVEL, integrator, mirror_wall};
 
-fn converge_studies(
+pub fn converge_studies(
     integrator: &dyn Integrator,
     schedule: &Schedule,
     predicted: Option<&Schedule>,

@@ -8,6 +8,7 @@ mod commands;
 mod converge;
 mod fits;
 mod regions;
+mod schedules;
 
 use libm::sqrt;
 use nephroid::entry;

@@ -1,7 +1,8 @@
 //! Expectations at points of the floor of any catalogue or user entry.
 
 use super::chart::chain::Chained;
-use super::chart::connection::{Caustic, Connection, LANDING, Link, Receiver};
+use super::chart::connection::{Caustic, Connection};
+use super::chart::link::{Case, Link, Receiver};
 use super::chart::merging::Merging;
 use super::chart::{integrate, scenes};
 use super::kernel::Profile;
@@ -21,6 +22,8 @@ pub struct EntryExpectation {
     technique: Technique,
     kernel: Kernel,
     convention: Convention,
+    /// Whether linked paths are built from the camera.
+    from_camera: bool,
     bandwidths: Vec<f64>,
     profile: Profile,
 }
@@ -68,6 +71,30 @@ impl EntryExpectation {
         Ok(Self::of(classes, receiver, estimator))
     }
 
+    /// The technique `camera` with a linked bandwidth: paths from the floor point, mollified at the vertex s next to the light within
+    /// atan(r/d), r a radius [m], `Linked` from the other side. `convention` is where d ends: what the exact ray from s meets first
+    /// (the floor, or the surface again; where it leaves the scene, d is the scene's diagonal), the floor point, or the light.
+    ///
+    /// # Errors
+    /// As for [`Self::new`] with `Linked`.
+    pub fn linked_from_camera(
+        entry: &Entry,
+        kernel: Kernel,
+        convention: Convention,
+        radii: &[f64],
+    ) -> Result<Self, InvalidParameter> {
+        let estimator = Estimator {
+            technique: Technique::Linked,
+            kernel,
+            convention,
+            bandwidths: radii,
+        };
+        // No photons: the beam's cross-section is of no meaning.
+        let mut expectation = Self::new(entry, estimator, 1.0)?;
+        expectation.from_camera = true;
+        Ok(expectation)
+    }
+
     fn of(classes: Vec<Class>, receiver: Receiver, estimator: Estimator<'_>) -> Self {
         let Estimator {
             technique,
@@ -81,6 +108,7 @@ impl EntryExpectation {
             technique,
             kernel,
             convention,
+            from_camera: false,
             bandwidths: bandwidths.to_vec(),
             profile: match technique {
                 Technique::Linked => Profile::default(),
@@ -159,16 +187,16 @@ impl EntryExpectation {
         if !weighted {
             (sum.value[1], sum.error[1]) = (f64::NAN, f64::INFINITY);
         }
+        let technique = if self.from_camera {
+            Technique::Camera
+        } else {
+            self.technique
+        };
         for caustic in &class.caustics {
-            sum.add(&self.connected(|link| {
-                let c = Connection::new(
-                    caustic,
-                    x,
-                    self.receiver,
-                    self.technique,
-                    &self.profile,
-                    link,
-                );
+            let conditions = caustic.surface.again_conditions();
+            sum.add(&self.connected(conditions, |link| {
+                let (receiver, profile) = (self.receiver, &self.profile);
+                let c = Connection::new(caustic, x, receiver, technique, profile, link);
                 integrate(&c, tolerance, floor)
             }));
         }
@@ -177,13 +205,13 @@ impl EntryExpectation {
             .iter()
             .flat_map(|c| c.families.iter().map(|chain| (c.source, chain)))
         {
-            sum.add(&self.connected(|link| {
+            sum.add(&self.connected(chain.again_conditions(), |link| {
                 Chained::new(
                     chain.as_ref(),
                     (source, class.photons),
                     x,
                     self.receiver,
-                    self.technique,
+                    technique,
                     &self.profile,
                     link,
                 )
@@ -200,25 +228,25 @@ impl EntryExpectation {
         }
     }
 
-    /// The sum over all links of what is connected, or the one value of a technique that links nothing.
-    fn connected(&self, connect: impl Fn(Option<Link>) -> Pair) -> Pair {
+    /// The sum over all links of what is connected, or the one value of a technique that links nothing. `conditions` is the number of
+    /// those under which a ray towards the light meets the surface again.
+    fn connected(&self, conditions: usize, connect: impl Fn(Option<Link>) -> Pair) -> Pair {
         if self.technique != Technique::Linked {
             return connect(None);
         }
+        let conditions = if self.from_camera { conditions } else { 0 };
+        let cases = Case::all(self.convention, conditions, self.receiver.escape.is_some());
         let mut sum = Pair::default();
         let share = 1.0 / self.bandwidths.len() as f64;
         for &radius in &self.bandwidths {
-            let link = |escapes| Link {
-                convention: self.convention,
-                radius,
-                kernel: self.kernel,
-                escapes,
-            };
-            sum.add(&connect(Some(link(None))).scaled(share));
-            if self.convention == Convention::Exact && self.receiver.escape.is_some() {
-                for k in 0..LANDING {
-                    sum.add(&connect(Some(link(Some(k)))).scaled(share));
-                }
+            for &case in &cases {
+                let link = Link {
+                    convention: self.convention,
+                    radius,
+                    kernel: self.kernel,
+                    case,
+                };
+                sum.add(&connect(Some(link)).scaled(share));
             }
         }
         sum

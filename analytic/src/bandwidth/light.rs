@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use super::Technique;
 use super::chart::chains::{Chains, chains};
-use super::chart::connection::{Caustic, Receiver, Source};
+use super::chart::connection::{Caustic, Source};
+use super::chart::link::Receiver;
 use super::chart::scenes;
 use crate::class::{Chain, PathClass};
 use crate::entries;

@@ -255,6 +255,24 @@ impl Expression {
     pub fn constant(&self) -> Option<Number> {
         self.root.constant()
     }
+
+    /// R1 and A of an expression that is `ppm(R1, A)` and nothing else.
+    pub fn ppm(&self) -> Option<[Number; 2]> {
+        let Term::Call(Function::Ppm, arguments) = &self.root.term else {
+            return None;
+        };
+        let [first, reduction] = arguments.as_slice() else {
+            return None;
+        };
+        Some([first.constant()?, reduction.constant()?])
+    }
+}
+
+impl PartialEq for Expression {
+    /// The same way of writing it.
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
 }
 
 impl fmt::Display for Expression {

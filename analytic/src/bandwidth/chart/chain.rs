@@ -16,14 +16,15 @@
 //! dΦ = I c₂ dA/r₂² these are the forms of [`super::connection`]. Here receiver and light are in the same medium, so that the n²
 //! of the radiance cancel on the way. `linked` is `light` with α = atan(r/d): d along the exact ray from s straight to the
 //! floor (one that is not on the floor then escapes, also where the next surface would stop it), to x, or along the
-//! path to the light.
+//! path to the light. From the camera it is `camera`: d along the exact ray to what it meets first, or straight to x or to the light.
 
 use core::f64::consts::PI;
 use core::fmt::Debug;
 
 use libm::{asin, sqrt};
 
-use super::connection::{Link, Receiver, Source, squared_chord};
+use super::connection::{Source, squared_chord};
+use super::link::{Again, Link, Receiver};
 use super::{Integrand, MARGINS, Node};
 use crate::bandwidth::Technique;
 use crate::bandwidth::kernel::Profile;
@@ -65,6 +66,10 @@ pub(in crate::bandwidth) trait Subpaths: Debug {
     fn cells(&self) -> [u32; 2] {
         [4, 4]
     }
+    /// Where the exact ray of a path meets the surface of its vertex again.
+    fn again(&self, _path: &Subpath) -> Option<Again> {
+        None
+    }
     /// Whether no vertex of the domain is below the floor: then its border is no margin as well.
     fn is_above_floor(&self) -> bool {
         false
@@ -79,6 +84,10 @@ pub(in crate::bandwidth) trait Chain: Debug + Send + Sync {
     fn light_paths<'a>(&'a self) -> Box<dyn Subpaths + 'a>;
     /// Whether the mollified vertex is on a mirror: only there two cosines make the symmetric form.
     fn is_mirror(&self) -> bool;
+    /// Number of conditions under which an exact ray towards the light meets a surface again; 0 if it never does.
+    fn again_conditions(&self) -> usize {
+        0
+    }
 }
 
 /// The light of a chain at a floor point.
@@ -213,12 +222,17 @@ impl Integrand for Chained<'_> {
             margins,
         };
         if let Some(link) = &self.link {
-            let lengths = [distance, path.length];
+            let lengths = if self.from_camera {
+                [(self.x - path.vertex).length(), distance]
+            } else {
+                [distance, path.length]
+            };
             node.distance = link.distance(
                 &self.receiver,
                 &path.vertex,
                 &path.exact,
                 lengths,
+                || self.subpaths.again(&path),
                 &mut node.margins,
             );
             let (level, deflection) = link.scaled(difference, node.distance);

@@ -11,17 +11,18 @@
 //!
 //! n the index of the receiver's medium relative to the light's, T the Fresnel factor at the side from which the path comes;
 //! for a mirror n = 1 and T = R. Parallel light: I/r₂² becomes E₀, and photons are uniform over a cross-section: 4πI becomes
-//! its flux. `linked` is `light` with α = atan(r/d). Source: `theory/bandwidth.md` sections 2 and 4.
+//! its flux. `linked` is `light`, or `camera`, with α = atan(r/d). Source: `theory/bandwidth.md` sections 2 and 4.
 
 use core::f64::consts::PI;
 use std::sync::Arc;
 
-use libm::{asin, atan2, exp, hypot, sqrt};
+use libm::{asin, sqrt};
 
+use super::link::{Link, Receiver, set_landing};
 use super::surfaces::{Legs, Surface, Vertex};
 use super::{Integrand, MARGINS, Node};
-use crate::bandwidth::kernel::{Profile, cone_height, epanechnikov_height, von_mises_fisher};
-use crate::bandwidth::{Convention, Kernel, Technique};
+use crate::bandwidth::Technique;
+use crate::bandwidth::kernel::Profile;
 use crate::optics::{fresnel_transmittance, reflect};
 use crate::vector::{Vec3, vec3};
 
@@ -52,58 +53,6 @@ pub(in crate::bandwidth) struct Caustic {
     /// Flux of all photons [W]: 4πI, or what a beam carries through the cross-section over which it is sampled.
     pub photons: f64,
 }
-
-/// What ends the exact ray: the clipped floor z = 0.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::bandwidth) struct Receiver {
-    pub center: [f64; 2],
-    pub half_width: [f64; 2],
-    /// Height [m].
-    pub z: f64,
-    /// About the size of what is over it [m].
-    pub size: f64,
-    /// The linked distance of a ray that leaves the scene [m]; `None`: such rays contribute nothing.
-    pub escape: Option<f64>,
-}
-
-/// How a linked bandwidth follows from a radius.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::bandwidth) struct Link {
-    pub convention: Convention,
-    pub radius: f64,
-    pub kernel: Kernel,
-    /// Whether the exact ray misses the floor, and through which of its conditions; `None`: it lands.
-    pub escapes: Option<usize>,
-}
-
-impl Receiver {
-    /// Size of the scene [m].
-    pub fn scale(&self) -> f64 {
-        self.size
-    }
-
-    /// Where an exact ray meets the plane, how far from its start, and the conditions under which it lands on the floor.
-    fn landing(&self, s: &Vec3<f64>, out: &Vec3<f64>) -> ([f64; 2], f64, [f64; LANDING]) {
-        let t = (s.z - self.z) / -out.z;
-        let p = [s.x + out.x * t, s.y + out.y * t];
-        let side = |k: usize| {
-            let v = (p[k] - self.center[k]) / self.half_width[k];
-            // Negative on both sides, and smooth through infinity.
-            if v.abs() > 1e8 {
-                -1.0
-            } else {
-                (1.0 - v) * (1.0 + v) / (1.0 + v * v)
-            }
-        };
-        let down = if s.z > self.z { -out.z } else { out.z };
-        (p, t, [down, side(0), side(1)])
-    }
-}
-
-/// Conditions under which an exact ray lands on the floor.
-pub(in crate::bandwidth) const LANDING: usize = 3;
-/// Where they stand among the margins.
-const FIRST: usize = MARGINS - LANDING;
 
 /// A caustic at a floor point.
 pub(in crate::bandwidth) struct Connection<'a> {
@@ -286,7 +235,7 @@ impl Integrand for Connection<'_> {
             let (p, t, landing) = self.receiver.landing(&s, &out);
             margins[4] = 1.0;
             margins[5] = 1.0;
-            margins[FIRST..].copy_from_slice(&landing);
+            set_landing(&mut margins, &landing);
             let legs = Legs {
                 to_x: out,
                 r1: t,
@@ -304,7 +253,7 @@ impl Integrand for Connection<'_> {
                 margins,
             };
         }
-        let (difference, density) = if self.is_from_camera() {
+        let (difference, density, continued) = if self.is_from_camera() {
             let (out, scale) = match interaction {
                 Interaction::Mirror(r) => (reflect(-to_x, normal), *r),
                 Interaction::Interface(index) => {
@@ -319,17 +268,17 @@ impl Integrand for Connection<'_> {
                 sample *= sqrt(c2 / c1);
             }
             let w = common * scale * cosine;
-            (out - to_light, [w, w * sample])
+            (out - to_light, [w, w * sample], out)
         } else {
             let (out, scale) = exact(&mut margins);
             let w = common * scale * c2;
             let sample = photons * scale * cx / (r1 * r1);
-            (out - to_x, [w, w * sample])
+            (out - to_x, [w, w * sample], out)
         };
         let mut level = difference.length_squared();
         // Across the normal the exact direction is n times the incident one, also beyond the critical angle.
         let least = match (interaction, self.is_from_camera()) {
-            (Interaction::Interface(index), true) => {
+            (Interaction::Interface(index), true) if self.link.is_none() => {
                 let d = to_x * *index + to_light;
                 let across = d - normal * d.dot(normal);
                 across.length_squared()
@@ -338,8 +287,9 @@ impl Integrand for Connection<'_> {
         };
         let (mut deflection, mut distance) = (difference, 0.0);
         if let Some(link) = &self.link {
-            let (out, _) = exact(&mut margins);
-            distance = link.distance(&self.receiver, &s, &out, [r1, r2], &mut margins);
+            let again = || surface.again(&s, &normal, &continued);
+            let (legs, m) = ([r1, r2], &mut margins);
+            distance = link.distance(&self.receiver, &s, &continued, legs, again, m);
             (level, deflection) = link.scaled(difference, distance);
         }
         Node {
@@ -363,83 +313,5 @@ impl Integrand for Connection<'_> {
             return self.profile.in_ring(ring, g);
         };
         link.kernel_at(node)
-    }
-}
-
-impl Link {
-    /// The end of the kernel as D²/B²: beyond k(1 − cos g) = 40, that is D² = 80/k = 20 α², nothing is left.
-    pub(super) fn reach(&self) -> f64 {
-        match self.kernel {
-            Kernel::VonMisesFisher => 20.0,
-            _ => 1.0,
-        }
-    }
-
-    /// The level and the deflection of a difference D of unit directions at the linked distance.
-    ///
-    /// The support is D² < k B² with the squared band B² = 4 sin²(α/2) (von Mises–Fisher: α²), tan α = r κ, κ = 1/d: even
-    /// in κ, so that D² − k B² is smooth where the ray turns away from the floor.
-    pub(super) fn scaled(&self, difference: Vec3<f64>, distance: f64) -> (f64, Vec3<f64>) {
-        let tangent = self.radius / distance;
-        let band = match self.kernel {
-            Kernel::VonMisesFisher => {
-                let alpha = libm::atan(tangent);
-                alpha * alpha
-            }
-            _ => {
-                let secant = hypot(1.0, tangent);
-                2.0 * tangent * tangent / (secant * (secant + 1.0))
-            }
-        };
-        let level = difference.length_squared() + self.reach() * (self.radius * self.radius - band);
-        (level, difference * (1.0 / sqrt(band)))
-    }
-
-    /// φ and φ² at a node.
-    pub(super) fn kernel_at(&self, node: &Node) -> [f64; 2] {
-        let alpha = atan2(self.radius, node.distance);
-        // D²/B².
-        let ratio = node.square();
-        let phi = match self.kernel {
-            Kernel::VonMisesFisher => {
-                let (k, n) = von_mises_fisher(alpha);
-                n * exp(-0.5 * k * ratio * alpha * alpha)
-            }
-            Kernel::Epanechnikov => {
-                let chord = 2.0 * libm::sin(0.5 * alpha) * sqrt(ratio);
-                let t = 2.0 * asin((0.5 * chord).min(1.0)) / alpha;
-                epanechnikov_height(alpha) * (1.0 - t * t)
-            }
-            _ => cone_height(alpha),
-        };
-        [phi, phi * phi]
-    }
-
-    /// The distance d, with the conditions of landing (or of the first that fails) as margins.
-    pub(super) fn distance(
-        &self,
-        receiver: &Receiver,
-        s: &Vec3<f64>,
-        out: &Vec3<f64>,
-        [r1, r2]: [f64; 2],
-        margins: &mut [f64; MARGINS],
-    ) -> f64 {
-        match self.convention {
-            Convention::Vertex => return r1,
-            Convention::Light => return r2,
-            Convention::Exact => {}
-        }
-        let (_, t, conditions) = receiver.landing(s, out);
-        match self.escapes {
-            None => {
-                margins[FIRST..].copy_from_slice(&conditions);
-                t
-            }
-            Some(k) => {
-                margins[FIRST..FIRST + k].copy_from_slice(&conditions[..k]);
-                margins[FIRST + k] = -conditions[k];
-                receiver.escape.unwrap_or(f64::INFINITY)
-            }
-        }
     }
 }

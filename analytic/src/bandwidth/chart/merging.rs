@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use libm::sqrt;
 
-use super::connection::{Plane, Receiver};
+use super::connection::Plane;
+use super::link::Receiver;
 use super::{Integrand, MARGINS, Node};
 use crate::bandwidth::kernel::Profile;
 use crate::flux::Bundle;

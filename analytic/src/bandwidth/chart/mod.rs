@@ -14,17 +14,19 @@ pub(super) mod chain;
 pub(super) mod chains;
 pub(super) mod connection;
 mod cutter;
+pub(super) mod link;
 pub(super) mod merging;
 pub(super) mod scenes;
 mod star;
 mod surfaces;
+mod walls;
 
 pub(super) use cutter::integrate as integrate_over;
 
 use super::quadrature::Pair;
 
 /// Number of margins of a node.
-pub(super) const MARGINS: usize = 12;
+pub(super) const MARGINS: usize = 15;
 
 /// What the integrals need at one pair of parameters.
 #[derive(Clone, Copy, Debug)]

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use libm::{acos, atan2, cos, hypot, sin, tan};
 
 use super::connection::{Caustic, Interaction, Source};
-use super::surfaces::{
-    ConicWall, Cylinder, FocalConic, HeightField, Level, Rectangle, SphereCap, Surface, frame_of,
-};
+use super::surfaces::{FocalConic, HeightField, Level, Rectangle, SphereCap, Surface, frame_of};
+use super::walls::{ConicWall, Cylinder};
 use crate::bandwidth::light::photons as flux_of;
 use crate::class::PathClass;
 use crate::kinds::flat_interface::FlatInterface;
@@ -353,6 +352,24 @@ pub(in crate::bandwidth) fn diagonal(kind: &Kind) -> Option<f64> {
     if let Source::Point(y, _) = source(kind)? {
         add(y);
     }
+    match kind {
+        Kind::PlanarMirror(s) => {
+            let (m, normal) = (&s.mirror, Vec3::from_f64(s.mirror.normal).normalized());
+            let along = Vec3::from_f64(m.edge).normalized();
+            let (u, v) = (along * m.half_width, normal.cross(along) * m.half_height);
+            for corner in [u + v, u - v, v - u, -u - v] {
+                add(Vec3::from_f64(m.center) + corner);
+            }
+            return Some((high - low).length());
+        }
+        Kind::ConicWall(s) => {
+            for p in s.wall.corners() {
+                add(Vec3::from_f64(p));
+            }
+            return Some((high - low).length());
+        }
+        _ => {}
+    }
     // A horizontal disc, or a vertical arc of a circle between two azimuths, with its height range.
     let mut disc = |[x, y]: [f64; 2], r: f64, z: [f64; 2]| {
         add(vec3(x - r, y - r, z[0]));
@@ -393,6 +410,15 @@ pub(in crate::bandwidth) fn diagonal(kind: &Kind) -> Option<f64> {
             s.dish.outer_radius,
             [s.dish.rim_z(), s.dish.vertex_z],
         ),
+        Kind::ConicMirrors(s) => {
+            let c = &s.conic;
+            let ends = if c.is_ellipsoid() {
+                [c.rim_z, c.vertex_z()]
+            } else {
+                [c.vertex_z(), c.rim_z]
+            };
+            disc(c.center, c.widest(), ends);
+        }
         _ => return None,
     }
     Some((high - low).length())

@@ -3,8 +3,9 @@
 use core::f64::consts::PI;
 use core::fmt::Debug;
 
-use libm::{cos, sin, sqrt, tan};
+use libm::{cos, sqrt, tan};
 
+use super::link::Again;
 use crate::vector::{Vec3, vec3};
 
 /// A point of a surface.
@@ -33,6 +34,16 @@ pub(in crate::bandwidth) trait Surface: Debug + Send + Sync {
     fn free(&self, _s: &Vec3<f64>, _normal: &Vec3<f64>, _legs: &Legs) -> [f64; 2] {
         [1.0; 2]
     }
+
+    /// Number of conditions under which a ray that leaves the surface meets it again; 0 if it never does.
+    fn again_conditions(&self) -> usize {
+        0
+    }
+
+    /// Where a ray that leaves `s` on the side of its normal meets the surface again.
+    fn again(&self, _s: &Vec3<f64>, _normal: &Vec3<f64>, _out: &Vec3<f64>) -> Option<Again> {
+        None
+    }
 }
 
 /// The two legs of a path from a vertex: unit directions and lengths [m].
@@ -46,14 +57,14 @@ pub(in crate::bandwidth) struct Legs {
 }
 
 impl Legs {
-    fn map(&self, f: impl Fn(&Vec3<f64>, f64) -> f64) -> [f64; 2] {
+    pub(super) fn map(&self, f: impl Fn(&Vec3<f64>, f64) -> f64) -> [f64; 2] {
         [f(&self.to_light, self.r2), f(&self.to_x, self.r1)]
     }
 }
 
 /// A margin that holds where any of the conditions does; smooth but where the best of them changes. An infinitely long leg never
 /// ends before it is stopped.
-fn any(conditions: &[f64]) -> f64 {
+pub(super) fn any(conditions: &[f64]) -> f64 {
     conditions.iter().copied().fold(-1.0, |best, c| {
         let c = c.clamp(-1.0, 1.0);
         if c > best { c } else { best }
@@ -152,53 +163,19 @@ impl Surface for SphereCap {
             any(&[off, chord - length])
         })
     }
-}
 
-/// A vertical wall over an arc of a circle, or part of it, by azimuth and height.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::bandwidth) struct Cylinder {
-    /// Axis (x, y) [m].
-    pub center: [f64; 2],
-    pub radius: f64,
-    /// −1 where the light is inside, 1 where it is outside.
-    pub side: f64,
-    /// Range of azimuths [rad].
-    pub azimuth: [f64; 2],
-    pub height: f64,
-    /// Whether what leaves the inner side meets the wall again only over |azimuth| ≤ this; 0 where it never does.
-    pub half_arc: f64,
-}
-
-impl Surface for Cylinder {
-    fn domain(&self) -> [[f64; 2]; 2] {
-        [self.azimuth, [0.0, self.height]]
+    fn again_conditions(&self) -> usize {
+        usize::from(self.side < 0.0)
     }
 
-    fn vertex(&self, u: [f64; 2]) -> Vertex {
-        let n = vec3(cos(u[0]), sin(u[0]), 0.0);
-        Vertex {
-            point: vec3(
-                self.center[0] + self.radius * n.x,
-                self.center[1] + self.radius * n.y,
-                u[1],
-            ),
-            normal: n * self.side,
-            area: self.radius,
-            margins: [1.0; 3],
-        }
-    }
-
-    fn free(&self, s: &Vec3<f64>, normal: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
-        if self.side > 0.0 || self.half_arc == 0.0 {
-            return [1.0; 2];
-        }
-        let edge = cos(self.half_arc);
-        legs.map(|d, length| {
-            let plan = d.x * d.x + d.y * d.y;
-            // Ray parameter of the second meeting with the circle, and the height there.
-            let t = 2.0 * self.radius * (d.x * normal.x + d.y * normal.y) / plan;
-            let along = (s.x + d.x * t - self.center[0]) / self.radius;
-            any(&[edge - along, s.z + d.z * t - self.height, t - length])
+    fn again(&self, s: &Vec3<f64>, normal: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let (axis, cos_rim) = self.whole;
+        let length = 2.0 * self.radius * out.dot(*normal);
+        let p = *s + *out * length;
+        let on = (p - self.center).dot(axis) / self.radius - cos_rim;
+        Some(Again {
+            length,
+            conditions: [on, 1.0, 1.0],
         })
     }
 }
@@ -310,6 +287,29 @@ impl<F: Fn([f64; 2]) -> (f64, [f64; 2], [f64; 2]) + Send + Sync> Surface for Hei
             any(&[off, through, t - length, -t])
         })
     }
+
+    fn again_conditions(&self) -> usize {
+        match self.dish {
+            Some((_, _, [inner, _])) => 1 + usize::from(inner > 0.0),
+            None => 0,
+        }
+    }
+
+    /// Inside a paraboloid a ray meets it again at a finite distance, unless it is along the axis.
+    fn again(&self, s: &Vec3<f64>, _: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let ([cx, cy], f, [inner, outer]) = self.dish?;
+        let (x, y) = (s.x - cx, s.y - cy);
+        let plan = out.x * out.x + out.y * out.y;
+        let length = -(4.0 * f * out.z + 2.0 * (x * out.x + y * out.y)) / plan;
+        let (x, y) = (x + out.x * length, y + out.y * length);
+        let square = x * x + y * y;
+        // Within −1 and 1 however far that is.
+        let within = |r: f64| (r * r - square) / (r * r + square);
+        Some(Again {
+            length,
+            conditions: [within(outer), -within(inner), 1.0],
+        })
+    }
 }
 
 /// A conic of revolution about the vertical through a focus, by the direction from it, in stereographic projection from below:
@@ -373,54 +373,19 @@ impl Surface for FocalConic {
             any(&[z - (s.z + d.z * t), t - length, -t])
         })
     }
-}
 
-/// A vertical wall over the arc r = p/(1 + e cos θ), |θ| ≤ half arc, about a focus, lit from inside; by θ and height.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::bandwidth) struct ConicWall {
-    pub focus: [f64; 2],
-    /// Unit vector towards θ = 0.
-    pub axis: [f64; 2],
-    pub parameter: f64,
-    pub eccentricity: f64,
-    pub half_arc: f64,
-    pub height: f64,
-}
-
-impl Surface for ConicWall {
-    fn domain(&self) -> [[f64; 2]; 2] {
-        [[-self.half_arc, self.half_arc], [0.0, self.height]]
+    fn again_conditions(&self) -> usize {
+        usize::from(!self.screen && self.alpha > 0.0)
     }
 
-    fn vertex(&self, u: [f64; 2]) -> Vertex {
-        let ([ax, ay], e) = (self.axis, self.eccentricity);
-        let (c, s) = (cos(u[0]), sin(u[0]));
-        let (dx, dy) = (ax * c - ay * s, ay * c + ax * s);
-        let slope = 1.0 + e * c;
-        let r = self.parameter / slope;
-        let (gx, gy) = (dx + e * ax, dy + e * ay);
-        let norm = sqrt(gx * gx + gy * gy);
-        Vertex {
-            point: vec3(self.focus[0] + dx * r, self.focus[1] + dy * r, u[1]),
-            normal: vec3(-gx / norm, -gy / norm, 0.0),
-            area: r * norm / slope,
-            margins: [1.0; 3],
-        }
-    }
-
-    fn free(&self, s: &Vec3<f64>, _: &Vec3<f64>, legs: &Legs) -> [f64; 2] {
-        let ([ax, ay], e) = (self.axis, self.eccentricity);
-        let p = [s.x - self.focus[0], s.y - self.focus[1]];
-        let r = libm::hypot(p[0], p[1]);
-        let end = cos(self.half_arc);
-        legs.map(|d, length| {
-            let plan = d.x * d.x + d.y * d.y;
-            let along = e * (d.x * ax + d.y * ay);
-            // The second meeting of the line with the conic in plan; both are on the same branch if t > 0.
-            let t = -2.0 * (p[0] * d.x + p[1] * d.y + r * along) / (plan - along * along);
-            let (x, y) = (p[0] + d.x * t, p[1] + d.y * t);
-            let off = end * libm::hypot(x, y) - (x * ax + y * ay);
-            any(&[off, s.z + d.z * t - self.height, t - length, -t])
+    fn again(&self, s: &Vec3<f64>, _: &Vec3<f64>, out: &Vec3<f64>) -> Option<Again> {
+        let p = *s - self.focus;
+        let b = self.beta * out.z;
+        let length = -2.0 * (p.dot(*out) + p.length() * b) / ((1.0 - b) * (1.0 + b));
+        let above = s.z + out.z * length - self.rim_at[0];
+        Some(Again {
+            length,
+            conditions: [above, 1.0, 1.0],
         })
     }
 }

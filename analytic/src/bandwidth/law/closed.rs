@@ -1,7 +1,10 @@
-//! κ of E_α = E₀ (1 + κ ⟨g²⟩ + O(α⁴)) in closed form, for the camera's and the light's side [theory/bandwidth.md, section 3].
+//! κ of E_α = E₀ (1 + κ ⟨g²⟩ + O(α⁴)) in closed form, for the camera's and the light's side [theory/bandwidth.md, section 3],
+//! and the law at a kink, E_α = E₀ + c α^(1/2).
 
+use super::constants::Shape;
 use crate::bandwidth::unfold::Unfolded;
-use crate::bandwidth::{PlanarSetting, Technique};
+use crate::bandwidth::{Kernel, PlanarSetting, Technique};
+use crate::kinds::flat_interface::FlatInterface;
 use crate::vector::Vec3;
 
 /// A plane mirror in any pose, at a point x of the receiver: `camera` and `light`. `None` for other techniques and behind the mirror.
@@ -70,4 +73,44 @@ pub fn interface_axis(n: f64, depth: f64, height: f64) -> [f64; 2] {
         1.0 / 6.0 - 4.0 * g3 / cube(g1) + h2 / (g1 * g1)
     };
     [camera, light]
+}
+
+/// The critical circle of an inner reflection, and what is merged on it.
+#[derive(Clone, Copy, Debug)]
+pub struct CriticalCircle {
+    /// Its radius X_c about the point under the light [m].
+    pub radius: f64,
+    /// Irradiance on it and just outside, where all light is reflected [W/m²].
+    pub irradiance: f64,
+    /// E ~ irradiance − strength (X_c − X)^(1/2) just inside [W/m²/m^(1/2)].
+    pub strength: f64,
+}
+
+impl CriticalCircle {
+    /// Of a flat interface that reflects inside the denser medium; `None` where there is no critical angle.
+    ///
+    /// With n the relative index and D the height of the folded way, sin i_c = 1/n and X_c = D tan i_c. Inside, the cosine in the rarer
+    /// medium is c_t = √(2n cos³ i_c (X_c − X)/D) to leading order, the amplitudes are 1 − 2c_t/(n cos i) and 1 − 2n c_t/cos i, and so
+    /// F = 1 − 2 (n + 1/n) c_t/cos i_c. Derived here.
+    pub fn of(form: &FlatInterface<f64>) -> Option<Self> {
+        let distance = form.distance_to_kink(form.light.x, form.light.y)?;
+        let height =
+            f64::abs(form.light.z - form.surface_z) + f64::abs(form.receiver_z - form.surface_z);
+        // The critical angle exists: the light's medium is the denser one.
+        let n = form.index.max(1.0 / form.index);
+        let cosine = libm::sqrt((n - 1.0) * (n + 1.0)) / n;
+        let cube = cosine * cosine * cosine;
+        let irradiance = form.intensity * cube / (height * height);
+        let grazing = libm::sqrt(2.0 * n * cube / height);
+        Some(CriticalCircle {
+            radius: distance,
+            irradiance,
+            strength: irradiance * 2.0 * (n + 1.0 / n) / cosine * grazing,
+        })
+    }
+
+    /// The coefficient of r^(1/2) in what is merged on the circle: there E_r ~ irradiance + coefficient r^(1/2), order 1/2.
+    pub fn coefficient(&self, kernel: Kernel) -> f64 {
+        -0.5 * self.strength * Shape::new(kernel, false).across(1, 0.5)
+    }
 }

@@ -4,13 +4,14 @@
 //! probability p(α) = ∫ w/f over the support. All N samples miss with (1 − p)^N; the *preview* bandwidth is the smallest at which
 //! that is at most ε.
 
-use crate::bandwidth::chart::connection::{Connection, LANDING, Link};
+use crate::bandwidth::chart::connection::Connection;
+use crate::bandwidth::chart::link::{Case, Link};
 use crate::bandwidth::chart::merging::Merging;
 use crate::bandwidth::chart::{Integrand, Node, integrate};
 use crate::bandwidth::kernel::Profile;
 use crate::bandwidth::law::family::Family;
 use crate::bandwidth::light::Class;
-use crate::bandwidth::{Bounded, Convention, Kernel, Technique};
+use crate::bandwidth::{Bounded, Kernel, Technique};
 
 /// An integrand whose density is that of the samples.
 struct Sampled<I>(I);
@@ -85,17 +86,13 @@ pub(super) fn probability(
             connect(None);
             continue;
         }
-        let link = |escapes| Link {
-            convention: family.convention,
-            radius: bandwidth,
-            kernel: family.kernel,
-            escapes,
-        };
-        connect(Some(link(None)));
-        if family.convention == Convention::Exact && family.receiver.escape.is_some() {
-            for k in 0..LANDING {
-                connect(Some(link(Some(k))));
-            }
+        for case in Case::all(family.convention, 0, family.receiver.escape.is_some()) {
+            connect(Some(Link {
+                convention: family.convention,
+                radius: bandwidth,
+                kernel: family.kernel,
+                case,
+            }));
         }
     }
     for bundle in &class.bundles {

@@ -74,6 +74,15 @@ impl Conic {
         sqrt((a - z) * (a + z) * (1.0 - e) * (1.0 + e))
     }
 
+    /// The largest radius of the mirror [m]: in the middle of an ellipsoid, if that is above its rim.
+    pub fn widest(&self) -> f64 {
+        let (a, e) = (self.semi_axis, self.eccentricity);
+        if self.is_ellipsoid() && self.rim_z <= self.center_z() {
+            return a * sqrt((1.0 - e) * (1.0 + e));
+        }
+        self.rim_radius()
+    }
+
     /// Height of the vertex [m]: the highest point of an ellipsoid, the lowest one of a hyperboloid's sheet.
     pub fn vertex_z(&self) -> f64 {
         self.center_z() + self.semi_axis

@@ -101,6 +101,24 @@ impl ConicArc {
         (self.half_arc_degrees < 180.0).then(|| self.half_arc_degrees.to_radians())
     }
 
+    /// Two opposite corners of the smallest box about the wall [m].
+    pub fn corners(&self) -> [[f64; 3]; 2] {
+        let (c, s) = self.axis();
+        let farthest = |[x, y]: [f64; 2]| {
+            let local = (x * c + y * s, y * c - x * s);
+            self.reach(local, -self.end(), self.end())
+        };
+        let [fx, fy] = self.focus;
+        [
+            [fx - farthest([-1.0, 0.0]), fy - farthest([0.0, -1.0]), 0.0],
+            [
+                fx + farthest([1.0, 0.0]),
+                fy + farthest([0.0, 1.0]),
+                self.height,
+            ],
+        ]
+    }
+
     fn end(&self) -> f64 {
         self.half_arc().unwrap_or(core::f64::consts::PI)
     }

@@ -11,6 +11,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use libm::{atan2, cos, hypot, sin, sincos, sqrt};
 
 use crate::bandwidth::chart::chain::{Chain, OWN, Subpath, Subpaths};
+use crate::bandwidth::chart::link::Again;
 use crate::kinds::power;
 use crate::scene::ClosedWall;
 use crate::vector::{Vec3, vec3};
@@ -71,6 +72,10 @@ impl Chain for Cup {
     fn is_mirror(&self) -> bool {
         true
     }
+
+    fn again_conditions(&self) -> usize {
+        1
+    }
 }
 
 /// Paths from a floor point by azimuth and the height of the last point on the wall.
@@ -87,6 +92,18 @@ impl Subpaths for FromReceiver<'_> {
 
     fn cells(&self) -> [u32; 2] {
         self.cup.cells()
+    }
+
+    /// After one more chord, unless the ray is above the wall there.
+    fn again(&self, path: &Subpath) -> Option<Again> {
+        let out = path.exact;
+        let plan = out.x * out.x + out.y * out.y;
+        let length = 2.0 * self.cup.radius * out.dot(path.normal) / plan;
+        let below = self.cup.height - (path.vertex.z + out.z * length);
+        Some(Again {
+            length,
+            conditions: [below, 1.0, 1.0],
+        })
     }
 
     fn path(&self, [azimuth, z]: [f64; 2]) -> Subpath {

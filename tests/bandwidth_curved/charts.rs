@@ -1,0 +1,266 @@
+//! Cylinders, water and waves on another chart: the trapezoid rule over the whole surface in parameters of its own, with the samples'
+//! definitions of `theory/bandwidth.md` written out. For the kernel that never ends (von Mises–Fisher) and a point whose spot
+//! nothing cuts the rule converges faster than any power, which halving its step shows.
+
+use std::f64::consts::PI;
+
+use nephroid_analytic::bandwidth::{Kernel, Technique};
+use nephroid_analytic::scene::{Entry, Kind};
+
+use super::{at, expectation, load, relative};
+
+type V = [f64; 3];
+
+fn sub(a: V, b: V) -> V {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn scaled(a: V, s: f64) -> V {
+    a.map(|c| c * s)
+}
+
+fn dot(a: V, b: V) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn length(a: V) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The exact continuation of a unit direction at a surface with unit normal `n` against it, and its Fresnel factor: reflected where
+/// there is no index, else into a medium of that index relative to this one.
+fn continued(d: V, n: V, index: Option<f64>) -> Option<(V, f64)> {
+    let c = -dot(d, n);
+    let Some(m) = index else {
+        return Some(([0, 1, 2].map(|k| d[k] + 2.0 * c * n[k]), 1.0));
+    };
+    let square = m * m - 1.0 + c * c;
+    if !(square > 0.0 && c > 0.0) {
+        return None;
+    }
+    let q = square.sqrt();
+    let out = [0, 1, 2].map(|k| (d[k] + (c - q) * n[k]) / m);
+    // Amplitudes of both polarisations.
+    let (s, p) = ((c - q) / (c + q), (m * m * c - q) / (m * m * c + q));
+    Some((out, 1.0 - 0.5 * (s * s + p * p)))
+}
+
+/// A surface and its light in the plainest terms.
+struct Optics {
+    /// Point, unit normal on the light's side, area per parameter area.
+    surface: Box<dyn Fn([f64; 2]) -> (V, V, f64)>,
+    /// Ranges of the parameters.
+    range: [[f64; 2]; 2],
+    /// Position and intensity, or direction towards the light and irradiance.
+    light: Result<(V, f64), (V, f64)>,
+    reflectance: f64,
+    /// Of the receiver's medium relative to the light's.
+    index: Option<f64>,
+}
+
+impl Optics {
+    /// Means and second moments of `camera`, `light`, `symmetric`, and the mean of `symmetric` from the light's side.
+    fn moments(&self, x: [f64; 2], alpha: f64, steps: usize) -> [f64; 7] {
+        let k = 4.0 / (alpha * alpha);
+        let top = k / (2.0 * PI * (1.0 - libm::exp(-2.0 * k)));
+        // Of the angle between unit vectors.
+        let phi = |a: V, b: V| {
+            let d = sub(a, b);
+            top * libm::exp(-0.5 * k * dot(d, d))
+        };
+        let cell = self.range.map(|[low, high]| (high - low) / steps as f64);
+        let mut sums = [0.0; 7];
+        for i in 0..steps * steps {
+            let u = [0, 1].map(|k| {
+                let at = [i % steps, i / steps][k] as f64 + 0.5;
+                self.range[k][0] + cell[k] * at
+            });
+            let (s, n, area) = (self.surface)(u);
+            let to_x = sub([x[0], x[1], 0.0], s);
+            let r1 = length(to_x);
+            let to_x = scaled(to_x, 1.0 / r1);
+            let (to_y, strength, photons) = match self.light {
+                Ok((y, intensity)) => {
+                    let d = sub(y, s);
+                    let r2 = length(d);
+                    (
+                        scaled(d, 1.0 / r2),
+                        intensity / (r2 * r2),
+                        4.0 * PI * intensity,
+                    )
+                }
+                Err((d, irradiance)) => (d, irradiance, irradiance),
+            };
+            let side = if self.index.is_some() { -1.0 } else { 1.0 };
+            let (c1, c2, cx) = (side * dot(to_x, n), dot(to_y, n), -to_x[2]);
+            if !(c1 > 0.0 && c2 > 0.0 && cx > 0.0) {
+                continue;
+            }
+            let weight = strength * cx * area * cell[0] * cell[1] / (r1 * r1);
+            let inverse = self.index.map(|m| 1.0 / m);
+            let back = continued(scaled(to_x, -1.0), scaled(n, side), inverse);
+            let forth = continued(scaled(to_y, -1.0), n, self.index);
+            let gain = self.index.map_or(1.0, |m| m * m);
+            if let Some((out, t)) = back {
+                let f = t * self.reflectance * phi(out, to_y);
+                let w = gain * weight * f;
+                sums[0] += w * c1;
+                sums[1] += w * c1 * PI * gain * strength * f;
+                let even = (c1 * c2).sqrt();
+                sums[4] += w * even;
+                sums[5] += w * even * PI * gain * strength * f * (c2 / c1).sqrt();
+            }
+            if let Some((out, t)) = forth {
+                let f = t * self.reflectance * phi(out, to_x);
+                let w = weight * f;
+                sums[2] += w * c2;
+                sums[3] += w * c2 * photons * f * cx / (r1 * r1);
+                // A photon's sample times √(c₁/c₂).
+                sums[6] += w * c2 * (c1 / c2).sqrt();
+            }
+        }
+        sums
+    }
+}
+
+/// A place from a parameter that is no multiple of it.
+fn bent(p: f64) -> (f64, f64) {
+    (p + 0.1 * p * p * p, 1.0 + 0.3 * p * p)
+}
+
+fn optics(entry: &Entry) -> Optics {
+    // The outside is seen from −x, the inside from the axis.
+    let azimuth = |centre: [f64; 2], radius: f64, side: f64, height: f64| {
+        // By the tangent of half the angle from −x or x, and a bent height.
+        move |[t, h]: [f64; 2]| {
+            let k = 1.0 / (1.0 + t * t);
+            let n = [-side * (1.0 - t * t) * k, -side * 2.0 * t * k, 0.0];
+            let (z, slope) = bent(h);
+            let s = [
+                centre[0] + radius * n[0],
+                centre[1] + radius * n[1],
+                height * z,
+            ];
+            (s, scaled(n, side), radius * 2.0 * k * height * slope)
+        }
+    };
+    match entry.kind.clone() {
+        Kind::Pillar(s) => Optics {
+            surface: Box::new(azimuth(
+                s.pillar.center,
+                s.pillar.radius,
+                1.0,
+                s.pillar.height,
+            )),
+            range: [[-1.2, 1.2], [0.0, 0.9]],
+            light: Ok((s.light.position, s.light.intensity)),
+            reflectance: s.pillar.reflectance,
+            index: None,
+        },
+        Kind::CylinderCup(s) => {
+            let end = libm::tan(0.5 * s.wall.half_arc_degrees.to_radians());
+            let elevation = s.light.elevation_degrees.to_radians();
+            let towards = [-libm::cos(elevation), 0.0, libm::sin(elevation)];
+            Optics {
+                surface: Box::new(azimuth([0.0; 2], s.wall.radius, -1.0, s.wall.height)),
+                range: [[-end, end], [0.0, 0.9]],
+                light: Err((towards, s.light.irradiance)),
+                reflectance: s.wall.reflectance,
+                index: None,
+            }
+        }
+        Kind::FlatInterface(s) => {
+            let z = s.water.surface_z;
+            let plane = move |[p, q]: [f64; 2]| {
+                let ((x, dx), (y, dy)) = (bent(p), bent(q));
+                ([x, y, z], [0.0, 0.0, 1.0], dx * dy)
+            };
+            Optics {
+                surface: Box::new(plane),
+                range: [[-1.5, 1.5]; 2],
+                light: Ok((s.light.position, s.light.intensity)),
+                reflectance: 1.0,
+                index: Some(s.water.index),
+            }
+        }
+        Kind::WaterWaves(s) => {
+            let (mean, waves) = (s.water.surface_z, s.waves.clone());
+            let water = move |[p, q]: [f64; 2]| {
+                let ((x, dx), (y, dy)) = (bent(p), bent(q));
+                let (mut z, mut g) = (mean, [0.0; 2]);
+                for w in &waves {
+                    let phase = w.wave_vector[0] * x + w.wave_vector[1] * y + w.phase;
+                    z += w.amplitude * libm::cos(phase);
+                    g = [0, 1].map(|k| g[k] - w.amplitude * w.wave_vector[k] * libm::sin(phase));
+                }
+                let steep = (1.0 + g[0] * g[0] + g[1] * g[1]).sqrt();
+                (
+                    [x, y, z],
+                    [-g[0] / steep, -g[1] / steep, 1.0 / steep],
+                    steep * dx * dy,
+                )
+            };
+            Optics {
+                surface: Box::new(water),
+                range: [[-0.5, 1.6], [-0.2, 1.9]],
+                light: Err(([0.0, 0.0, 1.0], s.light.irradiance)),
+                reflectance: 1.0,
+                index: Some(s.water.index),
+            }
+        }
+        _ => panic!("another kind"),
+    }
+}
+
+#[test]
+fn cylinders_and_water_on_another_chart() {
+    for (name, x, alpha, steps) in [
+        ("pillar", [-0.6, -0.35], 0.03, 900),
+        ("cup", [0.96, 0.136], 0.03, 1600),
+        ("pool", [0.104, 0.045], 0.03, 700),
+        ("ripple-pool", [0.68, 0.96], 0.03, 900),
+    ] {
+        let entry = load(name);
+        let optics = optics(&entry);
+        let [coarse, fine] = [steps / 2, steps].map(|n| optics.moments(x, alpha, n));
+        let found: Vec<f64> = [Technique::Camera, Technique::Light, Technique::Symmetric]
+            .into_iter()
+            .flat_map(|t| {
+                let e = expectation(&entry, t, Kernel::VonMisesFisher, &[alpha]);
+                let m = at(&e, x, 1e-12);
+                [m.mean.value, m.second_moment.value]
+            })
+            .collect();
+        // At an interface `symmetric` is the integrand of the camera.
+        let is_mirror = optics.index.is_none();
+        for k in 0..6 {
+            let expected = if is_mirror || k < 4 {
+                fine[k]
+            } else {
+                fine[k - 4]
+            };
+            let before = if is_mirror || k < 4 {
+                coarse[k]
+            } else {
+                coarse[k - 4]
+            };
+            let off = relative(found[k], expected);
+            println!(
+                "{name} {k}: {off:.1e}, half the nodes {:.1e}",
+                relative(before, expected)
+            );
+            assert!(off < 1e-10, "{name} {k}: {} {expected} {before}", found[k]);
+            // The rule has converged: its own halved step agrees.
+            assert!(relative(before, expected) < 1e-3, "{name} {k}");
+        }
+        // The symmetric form is its own adjoint: the same from the light's side, with the light's kernel.
+        if is_mirror {
+            assert!(
+                relative(found[4], fine[6]) < 1e-10,
+                "{name} {} {}",
+                found[4],
+                fine[6]
+            );
+        }
+    }
+}
