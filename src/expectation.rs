@@ -11,6 +11,7 @@ use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter, Kind};
 use rayon::prelude::*;
 
+use crate::frames;
 use crate::mosaic::{Mosaic, Rectangle};
 use crate::regions::Regions;
 
@@ -20,8 +21,24 @@ fn allowance(rectangles: usize) -> f64 {
     (4.0 / libm::sqrt(rectangles as f64)).max(1.0)
 }
 
-/// Whether there are expectations at finite bandwidth for a kind. What regularizes is not judged on the others.
-pub fn is_known(kind: &Kind) -> bool {
+/// Why there are no expectations of a technique on an entry, if there are none. What regularizes is not judged there.
+pub fn unknown(entry: &Entry, technique: Technique) -> Option<String> {
+    if is_planar(&entry.kind) {
+        return None;
+    }
+    let kernel = technique.default_kernel();
+    let error = frames::prepared(entry, technique, kernel, &[0.1]).err()?;
+    Some(format!(
+        "no exact expectation at finite bandwidth for the kind {}: {} is {}, allowed: {}",
+        entry.kind.name(),
+        error.key,
+        error.found,
+        error.allowed
+    ))
+}
+
+/// Whether every edge in the picture is a straight line, along which it can be cut.
+pub fn is_planar(kind: &Kind) -> bool {
     matches!(kind, Kind::Diffuse(_) | Kind::PlanarMirror(_))
 }
 
@@ -33,8 +50,8 @@ pub fn is_known(kind: &Kind) -> bool {
 /// threads. `diffuse` has no regularized class: an empty list.
 ///
 /// # Errors
-/// A kind other than `diffuse` and `planar-mirror`, an entry that does not validate, a kernel that does not fit the
-/// technique, a bandwidth out of range.
+/// A kind without a floor, or of which the technique knows nothing; an entry that does not validate, a kernel that does not
+/// fit the technique, a bandwidth out of range.
 pub fn class_means(
     entry: &Entry,
     technique: Technique,
@@ -67,14 +84,26 @@ pub fn area_moments(
 ) -> Result<Vec<(PathClass, Vec<Moments>)>, InvalidParameter> {
     nephroid_analytic::bandwidth::check(technique, kernel, bandwidths)?;
     let mosaic = regions.mosaic();
-    let averaged = |b: &[f64]| averaged_kernel(entry, technique, kernel, b, tolerance, &mosaic);
+    let is_planar = is_planar(&entry.kind);
+    let averaged = |b: &[f64]| {
+        if is_planar {
+            averaged_kernel(entry, technique, kernel, b, tolerance, &mosaic)
+        } else {
+            frames::area_moments(entry, technique, kernel, b, tolerance, regions)
+        }
+    };
     let fold = |f: fn(f64, f64) -> f64| bandwidths.iter().copied().reduce(f);
     let (low, high) = (
         fold(f64::min).unwrap_or_default(),
         fold(f64::max).unwrap_or_default(),
     );
     // More nodes for a wider range; below this length the averaged kernel itself is cheaper.
-    let nodes = if high > 4.0 * low { 9 } else { 5 };
+    let nodes = match (high > 4.0 * low, is_planar) {
+        (true, _) => 9,
+        (false, true) => 5,
+        // A picture with curved edges costs ten times as much.
+        (false, false) => 4,
+    };
     if bandwidths.len() <= nodes || !(high > low * (1.0 + 1e-9)) {
         return averaged(bandwidths);
     }

@@ -10,6 +10,7 @@ pub mod expectation;
 pub mod exr_output;
 pub mod extrapolation;
 pub mod film;
+mod frames;
 pub mod geometry;
 pub mod golden;
 pub mod integrators;

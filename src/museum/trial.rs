@@ -75,11 +75,7 @@ impl Hall {
         let sound = by_name(stand.integrator, &Settings::default())?;
         let plan = sound.plan(&entry);
         let (width, height) = (entry.camera.width, entry.camera.height);
-        let pair = Pair {
-            scene,
-            integrator: 0,
-            plan,
-        };
+        let pair = Pair::new(scene, 0, &entry, plan);
         let shape = first_shape(sound.as_ref(), &pair.plan, stand.bandwidth, &entry);
         let regions = Regions::quadtree(width, height);
         let kernel = None;

@@ -4,9 +4,9 @@ use nephroid_analytic::bandwidth::{Kernel, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 
-use super::expected::unknown;
 use super::options::{check_options, chosen};
 use super::region::{View, interior};
+use crate::expectation::{is_planar, unknown};
 use crate::integrators::{ClassPlan, Integrator, Treatment};
 use crate::verify::expected::mollified;
 
@@ -116,8 +116,12 @@ impl Asked<'_> {
                 let Some(t) = chosen(mollified(t), self.technique)? else {
                     return Ok(Err("no exact expectation of this technique".to_owned()));
                 };
-                if let Some(reason) = unknown(self.entry, t, self.kernel_of(t)) {
+                if let Some(reason) = unknown(self.entry, t) {
                     return Ok(Err(reason));
+                }
+                if self.region.is_none() && !is_planar(&self.entry.kind) {
+                    let reason = "interior parts of a picture are looked for in planar scenes only: name a --region";
+                    return Ok(Err(reason.to_owned()));
                 }
                 Some(t)
             }

@@ -4,17 +4,20 @@ use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Bounded, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::pixel::PixelTruth;
-use nephroid_analytic::scene::{Entry, InvalidParameter};
+use nephroid_analytic::scene::InvalidParameter;
 use rayon::prelude::*;
 
 use super::region::View;
-use crate::expectation::Interpolation;
+use crate::expectation::{Interpolation, is_planar};
+use crate::frames;
 use crate::integrators::Prepared;
 
 /// Relative tolerance of means: a hundredth of a bias of 1e-4.
 const TOLERANCE: f64 = 1e-6;
 /// Tolerance that a region with edges reaches in seconds.
 const TOLERANCE_WITH_EDGES: f64 = 2e-5;
+/// Tolerances of mean and second moment where edges are curved, or the light is.
+const TOLERANCE_CURVED: [f64; 2] = [1e-4, 1e-2];
 /// Longer schedules are interpolated between so many bandwidths.
 const NODES: usize = 12;
 
@@ -65,16 +68,6 @@ pub fn sharp(view: &View, class: PathClass) -> Result<Option<Bounded>, InvalidPa
         sum.error += b.error / view.area();
     }
     Ok(Some(sum))
-}
-
-/// Why there are no exact expectations for a scene, if there are none.
-pub fn unknown(entry: &Entry, technique: Technique, kernel: Kernel) -> Option<String> {
-    let film = FilmExpectation::new(entry, technique, kernel, &[0.1]);
-    let error = film.err().filter(|e| e.key == "kind")?;
-    Some(format!(
-        "no exact expectation at finite bandwidth for the kind {}",
-        error.found
-    ))
 }
 
 /// What is expected at each bandwidth.
@@ -184,6 +177,9 @@ fn at(
     kernel: Kernel,
     bandwidth: f64,
 ) -> Result<Expected, InvalidParameter> {
+    if !is_planar(&view.entry.kind) {
+        return on_tiles(view, class, technique, kernel, bandwidth);
+    }
     let film = FilmExpectation::new(&view.entry, technique, kernel, &[bandwidth])?;
     let Some(layer) = film.classes().iter().position(|&c| c == class) else {
         return Ok(Expected::default());
@@ -202,6 +198,32 @@ fn at(
         mean: per(moments.mean, 1.0 / view.area()),
         second_moment: per(moments.second_moment, view.dilution() / view.area()),
         hit: hit(&film, class, view),
+        excess: 0.0,
+    })
+}
+
+/// The same where edges in the picture are curved.
+fn on_tiles(
+    view: &View,
+    class: PathClass,
+    technique: Technique,
+    kernel: Kernel,
+    bandwidth: f64,
+) -> Result<Expected, InvalidParameter> {
+    let frame = frames::prepared(&view.entry, technique, kernel, &[bandwidth])?;
+    let Some(layer) = frame.classes().iter().position(|&c| c == class) else {
+        return Ok(Expected::default());
+    };
+    let (columns, rows) = (view.columns.clone(), view.rows.clone());
+    let moments = frames::region(&frame, layer, columns, rows, TOLERANCE_CURVED);
+    let per = |b: Bounded, by: f64| Bounded {
+        value: by * b.value,
+        error: by * b.error,
+    };
+    Ok(Expected {
+        mean: per(moments.mean, 1.0 / view.area()),
+        second_moment: per(moments.second_moment, view.dilution() / view.area()),
+        hit: None,
         excess: 0.0,
     })
 }

@@ -54,12 +54,13 @@ pub(super) struct Varied {
 /// falls.
 const KEPT_BY_CROP: f64 = 0.25;
 
-/// For each integrator the pairs on which it may be varied: those that claim the most classes first, then in their order.
+/// For each integrator the pairs on which it may be varied: those with a cheap truth first, since more than one may be asked, of these
+/// those that claim the most classes, then in their order.
 fn candidates(pairs: &[Pair], integrators: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..integrators).filter_map(move |i| {
         let of = |p: &usize| pairs[*p].integrator == i && pairs[*p].checks() > 0;
         let mut all: Vec<usize> = (0..pairs.len()).filter(of).collect();
-        all.sort_by_key(|&p| core::cmp::Reverse(pairs[p].checks()));
+        all.sort_by_key(|&p| (pairs[p].truth, core::cmp::Reverse(pairs[p].checks())));
         (!all.is_empty()).then_some(all)
     })
 }

@@ -42,9 +42,46 @@ pub struct Pair {
     pub integrator: usize,
     /// What the integrator does about the scene's classes.
     pub plan: Plan,
+    /// What it costs to know what it should find.
+    pub truth: TruthCost,
+}
+
+/// What the truth of a pair costs, by what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum TruthCost {
+    /// Closed forms, or expectations of a picture with straight edges: a second at most.
+    Low,
+    /// Expectations with one mollified vertex at each of a thousand points: seconds.
+    Points,
+    /// The same through several vertices: up to minutes.
+    Chains,
+}
+
+impl TruthCost {
+    fn of(entry: &Entry, plan: &Plan) -> Self {
+        let regularized = plan
+            .iter()
+            .filter(|c| matches!(c.treatment, Treatment::Regularized(_)));
+        match regularized.map(|c| c.class.light.len()).max() {
+            None => TruthCost::Low,
+            Some(_) if expectation::is_planar(&entry.kind) => TruthCost::Low,
+            Some(1) => TruthCost::Points,
+            Some(_) => TruthCost::Chains,
+        }
+    }
 }
 
 impl Pair {
+    /// A scene and an integrator with what it does about the scene's classes.
+    pub fn new(scene: usize, integrator: usize, entry: &Entry, plan: Plan) -> Self {
+        Pair {
+            scene,
+            integrator,
+            truth: TruthCost::of(entry, &plan),
+            plan,
+        }
+    }
+
     /// Positions of the classes that the integrator claims.
     pub fn claimed(&self) -> Vec<usize> {
         let sampled =
@@ -77,11 +114,7 @@ pub fn select(
             let plan = integrator.plan(&subject.entry);
             match without_truth(&subject.entry, integrator.as_ref(), &plan) {
                 Some(reason) => not_run.push((s, i, reason)),
-                None => pairs.push(Pair {
-                    scene: s,
-                    integrator: i,
-                    plan,
-                }),
+                None => pairs.push(Pair::new(s, i, &subject.entry, plan)),
             }
         }
     }
@@ -110,22 +143,24 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
     if let Err(reason) = integrator.supports(entry) {
         return Some(reason);
     }
-    let unknown = |t: Treatment| match t {
-        Treatment::Regularized(technique) => {
-            mollified(technique).is_none() || !expectation::is_known(&entry.kind)
-        }
-        _ => false,
-    };
-    plan.iter().any(|c| unknown(c.treatment)).then(|| {
-        format!(
-            "no exact expectation at finite bandwidth for the kind {}",
-            entry.kind.name()
-        )
-    })
+    let mut regularized: Vec<_> = plan
+        .iter()
+        .filter_map(|c| match c.treatment {
+            Treatment::Regularized(technique) => Some(technique),
+            _ => None,
+        })
+        .collect();
+    regularized.dedup();
+    regularized
+        .into_iter()
+        .find_map(|technique| match mollified(technique) {
+            Some(technique) => expectation::unknown(entry, technique),
+            None => Some("no exact expectation of its technique".to_owned()),
+        })
 }
 
-/// Marks a covering subset. Each integrator takes the entries on which it claims the most classes; then entries that
-/// still lack integrators take those that claim the most. Ties go to the first. Pairs that claim nothing cost nothing
+/// Marks a covering subset. Each integrator takes the entries on which it claims the most classes, those with chains
+/// at finite bandwidth last, whose truth is dear; then entries that still lack integrators take those that claim the most. Ties go to the first. Pairs that claim nothing cost nothing
 /// and stay.
 fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
     let classes: Vec<usize> = pairs.iter().map(|p| p.claimed().len()).collect();
@@ -134,7 +169,10 @@ fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
         let mut candidates: Vec<usize> = (0..pairs.len())
             .filter(|&k| classes[k] > 0 && belongs(&pairs[k]))
             .collect();
-        candidates.sort_by_key(|&k| (!keep[k], core::cmp::Reverse(classes[k])));
+        candidates.sort_by_key(|&k| {
+            let is_dear = pairs[k].truth == TruthCost::Chains;
+            (!keep[k], is_dear, core::cmp::Reverse(classes[k]))
+        });
         for k in candidates.into_iter().take(COVER) {
             keep[k] = true;
         }

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use nephroid::entry;
 use nephroid::evaluate::evaluate;
 use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};
+use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::frame::FrameExpectation;
 use nephroid_analytic::bandwidth::{
     Convention, Expectation, Kernel, Moments, PlanarSetting, Technique,
@@ -289,6 +290,37 @@ fn regions_and_pixels_are_means_of_points() {
             "{name}: {total} {region:?}"
         );
         assert!(off <= 3e-3 * total, "{name}: {total} {region:?}");
+    }
+}
+
+/// The plane mirror by the tiles of curved pictures against polygons that are cut along its edges and integrated in polar coordinates.
+#[test]
+fn pictures_of_a_plane_mirror_by_two_routes() {
+    let mut scene = load("mirror-wall");
+    (scene.camera.width, scene.camera.height) = (32, 32);
+    for technique in [Technique::Camera, Technique::Merge] {
+        let (kernel, bandwidths) = (technique.default_kernel(), [0.2]);
+        let estimator = Estimator {
+            technique,
+            kernel,
+            convention: Convention::Exact,
+            bandwidths: &bandwidths,
+        };
+        let frame = FrameExpectation::new(&scene, estimator, 1.0).expect("a frame");
+        let film = FilmExpectation::new(&scene, technique, kernel, &bandwidths).expect("a film");
+        assert_eq!(frame.classes(), film.classes());
+        let unlimited = [[f64::INFINITY; 2]; 2];
+        let rough = film.region(0..32, 0..32, &unlimited, 1e-3);
+        let targets = [0, 1].map(|c| [2e-5 * rough[c].mean.value, f64::INFINITY]);
+        let polygons = film.region(0..32, 0..32, &targets, 1e-5);
+        for (class, exact) in polygons.iter().enumerate() {
+            let found = frame.region(class, 0..32, 0..32, 2e-4, [0.0, f64::INFINITY]);
+            let off = (found.mean.value - exact.mean.value).abs();
+            assert!(
+                off <= found.mean.error + exact.mean.error && off <= 4e-4 * exact.mean.value,
+                "{technique} {class}: {found:?} {exact:?}"
+            );
+        }
     }
 }
 

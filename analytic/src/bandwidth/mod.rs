@@ -18,6 +18,7 @@ mod chart;
 mod clip;
 mod cubature;
 pub mod entry;
+mod eye;
 pub mod film;
 pub mod flatland;
 pub mod frame;
@@ -32,6 +33,7 @@ mod polar;
 pub mod probe;
 mod quadrature;
 mod setting;
+pub mod tile;
 mod unfold;
 
 use core::fmt;

@@ -171,10 +171,8 @@ impl<I: Integrand> Cutter<'_, I> {
         for leaf in &self.leaves {
             total.add(&leaf.pair);
         }
-        let slack = self.integrand.slack();
-        let target = |total: &Pair, k: usize| {
-            tolerance * slack[k] * (total.value[k] + others[k]).abs().max(floor[k])
-        };
+        let target =
+            |total: &Pair, k: usize| tolerance * (total.value[k] + others[k]).abs().max(floor[k]);
         let urgency = |pair: &Pair, total: &Pair| {
             (0..2)
                 .map(|k| pair.error[k] / target(total, k).max(f64::MIN_POSITIVE))

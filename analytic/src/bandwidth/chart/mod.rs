@@ -21,8 +21,6 @@ mod star;
 mod surfaces;
 mod walls;
 
-pub(super) use cutter::integrate as integrate_over;
-
 use super::quadrature::Pair;
 
 /// Number of margins of a node.
@@ -74,10 +72,6 @@ pub(super) trait Integrand {
     fn kernel(&self, ring: usize, node: &Node) -> [f64; 2];
     /// Relative rounding of the level at the kernel's edge.
     fn rounding(&self) -> f64;
-    /// What multiplies the tolerance of the mean and of the second moment.
-    fn slack(&self) -> [f64; 2] {
-        [1.0; 2]
-    }
     /// Cells along both axes on which nothing is hidden between nine samples.
     fn coarse(&self) -> [u32; 2] {
         [2, 2]
