@@ -132,5 +132,6 @@ fn technique(treatment: Treatment) -> Option<&'static str> {
         Technique::LightTracing => "light_tracing",
         Technique::Camera => "camera",
         Technique::Merge => "merge",
+        Technique::ManifoldSampling => "manifold_sampling",
     })
 }
