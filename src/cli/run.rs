@@ -10,7 +10,7 @@ use crate::exr_output::{metadata, write_exr};
 use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
 use crate::integrators::{
-    Integrator, Kernel, Plan, Schedule, Settings, Technique, Treatment, by_name,
+    Integrator, Kernel, Mollified, Plan, Schedule, Settings, Technique, Treatment, by_name,
 };
 use crate::{entry, exit};
 
@@ -25,7 +25,7 @@ const DEFAULT_BANDWIDTH: f64 = 0.2;
 pub struct Args {
     /// A name from `nephroid list`, or a TOML file.
     scene: String,
-    /// pt, pt-reg, lt, pm or ppm.
+    /// pt, pt-reg, lt, pm, ppm or sms.
     #[arg(long, value_name = "NAME")]
     integrator: String,
     /// Paths over the whole image, such as 3e7. A path of pm and ppm is one photon and one camera path.
@@ -49,6 +49,9 @@ pub struct Args {
     /// radius (pm, ppm).
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
+    /// Specular vertices of a chain that pt-reg mollifies: light (the one next to the light), or all, among plane mirrors.
+    #[arg(long, value_name = "WHICH", default_value = "light")]
+    mollified: Mollified,
     /// The EXR file to write.
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
@@ -60,6 +63,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let settings = Settings {
         kernel: args.kernel,
         fault: None,
+        mollified: args.mollified,
     };
     let integrator = by_name(&args.integrator, &settings)?;
     integrator.supports(&entry).map_err(|reason| {

@@ -39,8 +39,9 @@ pub use ppm::Ppm;
 pub use pt::Pt;
 pub use pt_reg::PtReg;
 pub use schedule::Schedule;
-pub use settings::Settings;
+pub use settings::{Mollified, Settings};
 pub use sms::Sms;
+pub use stage::Sight;
 
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
@@ -80,6 +81,8 @@ pub enum Technique {
     LightTracing,
     /// Regularized connection from the camera side.
     Camera,
+    /// The same with every specular vertex of a chain mollified.
+    CameraEveryVertex,
     /// Merging with photons within a radius.
     Merge,
     /// Newton's method on the specular constraint, from random points of the surface.

@@ -3,12 +3,15 @@
 
 use glam::DVec3;
 use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::Entry;
 
 use crate::geometry::chains::{Chains, Vertex};
+use crate::geometry::compiled::{Visitor, visit};
+use crate::geometry::furnace::Furnace;
 use crate::geometry::light::Light;
 use crate::geometry::once::Once;
 use crate::geometry::pinhole::Pinhole;
-use crate::geometry::scene::Scene;
+use crate::geometry::scene::{Overrides, Scene};
 use crate::geometry::specular::Specular;
 
 use super::chains::{direct_radiance, seen_vertex};
@@ -179,5 +182,40 @@ impl<L: Light, S: Specular> Stage for Mirrored<L, S> {
         squared_chord: f64,
     ) -> Option<(Vertex, ToLight)> {
         self.floor.connected(chain, x, direction, squared_chord)
+    }
+}
+
+/// Where camera rays end on the floor, for what judges images.
+pub struct Sight(Box<dyn Stage>);
+
+impl Sight {
+    /// The sight of a validated entry; `None` without a floor.
+    pub fn new(entry: &Entry) -> Option<Self> {
+        visit(entry, Overrides::default(), Look).map(Sight)
+    }
+
+    /// The floor point (x, y) [m] that is seen at a film position (columns from the left, rows from the top), and whether
+    /// it is seen through the specular surface.
+    pub fn floor_point(&self, column: f64, row: f64) -> Option<([f64; 2], bool)> {
+        let seen = self.0.seen(self.0.camera().direction(column, row))?;
+        Some(([seen.vertex.x, seen.vertex.y], seen.via))
+    }
+}
+
+struct Look;
+
+impl Visitor for Look {
+    type Output = Option<Box<dyn Stage>>;
+
+    fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Self::Output {
+        Some(Box::new(Mirrored::new(scene)))
+    }
+
+    fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output {
+        Some(Box::new(Open(scene)))
+    }
+
+    fn furnace(self, _: Furnace) -> Self::Output {
+        None
     }
 }

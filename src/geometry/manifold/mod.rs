@@ -38,7 +38,7 @@ pub trait Manifold: Send + Sync {
 }
 
 /// Two unit vectors that make an orthonormal frame with a unit vector.
-pub(super) fn tangents(normal: DVec3) -> [DVec3; 2] {
+pub(crate) fn tangents(normal: DVec3) -> [DVec3; 2] {
     let aside = if f64::abs(normal.z) < 0.6 {
         DVec3::Z
     } else {
