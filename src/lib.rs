@@ -1,5 +1,6 @@
 //! nephroid: a test oracle for light transport that ordinary tests cannot judge.
 
+pub mod bench;
 pub mod cli;
 pub mod diagnosis;
 pub mod entry;

@@ -27,6 +27,11 @@ pub enum Dimension {
     ThirdDirection = 4,
 }
 
+/// The dimension block of the first of a path's trials; those before it are for [`Dimension`].
+const FIRST_TRIAL: u64 = 1 << 16;
+/// Trials that one key has counters for.
+const TRIALS: u64 = (1 << 32) - FIRST_TRIAL;
+
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const ROUNDS: usize = 10;
@@ -74,6 +79,16 @@ impl Stream {
             key: [seed as u32, (seed >> 32) as u32],
             iteration,
         }
+    }
+
+    /// Two uniforms in [0, 1) of 53 bits for one of a path's trials, of which there is no end: 2³² beyond the first 2³² take
+    /// another key, and so on.
+    pub fn trial(&self, path: u64, trial: u64) -> (f64, f64) {
+        let dimension = (FIRST_TRIAL + trial % TRIALS) as u32;
+        let counter = [path as u32, (path >> 32) as u32, self.iteration, dimension];
+        let key = [self.key[0], self.key[1] ^ ((trial / TRIALS) as u32)];
+        let [a, b, c, d] = philox(counter, key);
+        (uniform(a, b), uniform(c, d))
     }
 
     /// Two uniforms in [0, 1) of 53 bits for each of the paths `first ..`. `first` is a multiple of [`BLOCK`].

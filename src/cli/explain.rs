@@ -131,6 +131,8 @@ fn technique(treatment: Treatment) -> Option<&'static str> {
         Technique::NextEvent => "next_event",
         Technique::LightTracing => "light_tracing",
         Technique::Camera => "camera",
+        Technique::CameraEveryVertex => "camera_every_vertex",
         Technique::Merge => "merge",
+        Technique::ManifoldSampling => "manifold_sampling",
     })
 }

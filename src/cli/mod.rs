@@ -2,6 +2,7 @@
 
 mod bandwidth;
 mod bandwidth_answer;
+mod bench;
 mod bias;
 mod converge;
 mod evaluate;
@@ -53,6 +54,7 @@ enum Command {
     Schedule(schedule::Args),
     Golden(golden::Args),
     Stability(stability::Args),
+    Bench(bench::Args),
 }
 
 /// Parses the command line, runs the command and turns the result into an exit code.
@@ -74,6 +76,7 @@ pub fn main() -> ExitCode {
         Command::Schedule(args) => schedule::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Stability(args) => stability::run(&args),
+        Command::Bench(args) => bench::run(&args),
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -11,7 +11,7 @@ use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
 use crate::integrators::schedule::ALLOWED;
 use crate::integrators::{
-    Integrator, Kernel, Plan, Schedule, Settings, Technique, Treatment, by_name,
+    Integrator, Kernel, Mollified, Plan, Schedule, Settings, Technique, Treatment, by_name,
 };
 use crate::{entry, exit};
 
@@ -28,7 +28,7 @@ const DEFAULT_BANDWIDTH: f64 = 0.2;
 pub struct Args {
     /// A name from `nephroid list`, or a TOML file.
     scene: String,
-    /// pt, pt-reg, lt, pm or ppm.
+    /// pt, pt-reg, lt, pm, ppm or sms.
     #[arg(long, value_name = "NAME")]
     integrator: String,
     /// Paths over the whole image, such as 3e7. A path of pm and ppm is one photon and one camera path.
@@ -52,6 +52,9 @@ pub struct Args {
     /// radius (pm, ppm).
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
+    /// Specular vertices of a chain that pt-reg mollifies: light (the one next to the light), or all, among plane mirrors.
+    #[arg(long, value_name = "WHICH", default_value = "light")]
+    mollified: Mollified,
     /// The EXR file to write.
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
@@ -62,7 +65,7 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let entry = entry::load(&args.scene)?;
     let settings = Settings {
         kernel: args.kernel,
-        fault: None,
+        mollified: args.mollified,
         ..Settings::default()
     };
     let integrator = by_name(&args.integrator, &settings)?;

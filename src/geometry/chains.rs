@@ -67,6 +67,12 @@ pub trait Chains: Copy + Send + Sync + 'static {
         self.strike(chain, origin, direction)
     }
 
+    /// The first reflection of a ray, whatever comes after it: what a chain of vertices that are all mollified is made of.
+    /// `None` where there is none, and for surfaces that are not plane mirrors.
+    fn reflection(&self, _origin: DVec3, _direction: DVec3) -> Option<Vertex> {
+        None
+    }
+
     /// Ray parameter at which a ray that leaves a vertex on the side of its normal meets a surface again; infinite where it
     /// does not.
     fn again(&self, _vertex: &Vertex, _direction: DVec3) -> f64 {

@@ -21,6 +21,7 @@ pub mod glass_ball;
 pub mod glass_pillar;
 pub mod lens;
 pub mod light;
+pub mod manifold;
 pub mod once;
 pub mod pillar;
 pub mod pinhole;

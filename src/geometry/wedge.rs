@@ -96,6 +96,10 @@ impl Chains for Wedge {
         })
     }
 
+    fn reflection(&self, origin: DVec3, direction: DVec3) -> Option<Vertex> {
+        self.strike(1, origin, direction)
+    }
+
     fn again(&self, vertex: &Vertex, direction: DVec3) -> f64 {
         self.first(vertex.point, direction).1
     }

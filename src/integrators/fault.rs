@@ -134,6 +134,23 @@ pub enum Fault {
     IterationsShareNumbers,
     /// Landing points of light paths rounded to single precision, in a scene 1e6 m away from the origin.
     SinglePrecision,
+    /// Specular manifold sampling: the surface area per area at a point light is clamped at 1, the solid angle per solid angle
+    /// of parallel light at 10.
+    ManifoldJacobianClamped,
+    /// Specular manifold sampling: the generalised geometry term is clamped at 2 (per m² for a point light).
+    GeneralizedGeometryClamped,
+    /// Specular manifold sampling: solutions in directions whose cosine is within 1e-4 of 1 are taken for one.
+    SolutionsMerged,
+    /// Specular manifold sampling: a walk ends where its next step is 1e-3 of the distance.
+    ResidualLoose,
+    /// Specular manifold sampling: the different solutions of four walks, with the weight 1.
+    FixedNumberOfWalks,
+    /// Specular manifold sampling: a solution that four further walks do not find again is dropped.
+    TrialsBounded,
+    /// Specular manifold sampling: the reciprocal probability is the number of failures before the solution is found again.
+    ReciprocalOffByOne,
+    /// Specular manifold sampling: the first solution counts with the weight 1.
+    ReciprocalForgotten,
     /// The paths of one class are lost.
     ClassDropped(PathClass),
 }

@@ -15,6 +15,8 @@ mod fault;
 mod furnace;
 pub mod kernel;
 mod lt;
+mod manifold_defect;
+mod manifold_walk;
 mod merged_chains;
 mod photon_grid;
 mod photon_mapping;
@@ -27,6 +29,8 @@ mod pt_reg;
 mod regularized_chains;
 pub mod schedule;
 mod settings;
+mod sms;
+mod stage;
 
 pub use fault::Fault;
 pub use kernel::Kernel;
@@ -36,7 +40,9 @@ pub use ppm::Ppm;
 pub use pt::Pt;
 pub use pt_reg::PtReg;
 pub use schedule::Schedule;
-pub use settings::Settings;
+pub use settings::{Mollified, Settings};
+pub use sms::Sms;
+pub use stage::Sight;
 
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
@@ -76,8 +82,12 @@ pub enum Technique {
     LightTracing,
     /// Regularized connection from the camera side.
     Camera,
+    /// The same with every specular vertex of a chain mollified.
+    CameraEveryVertex,
     /// Merging with photons within a radius.
     Merge,
+    /// Newton's method on the specular constraint, from random points of the surface.
+    ManifoldSampling,
 }
 
 /// Per class, in the order of the film's layers.
@@ -163,7 +173,7 @@ pub fn all() -> Vec<Box<dyn Integrator>> {
 }
 
 /// The names of the methods, in the order in which they are listed.
-pub const NAMES: [&str; 5] = ["pt", "pt-reg", "lt", "pm", "ppm"];
+pub const NAMES: [&str; 6] = ["pt", "pt-reg", "lt", "pm", "ppm", "sms"];
 
 /// The method of a name.
 ///
@@ -182,6 +192,7 @@ pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, E
     Ok(match name {
         "pt" => Box::new(Pt::new(settings)),
         "lt" => Box::new(Lt::new(settings)),
+        "sms" => Box::new(Sms::new(settings)),
         "pt-reg" => {
             takes(Kernel::is_angular, "cone, epanechnikov, vmf")?;
             Box::new(PtReg::new(settings))

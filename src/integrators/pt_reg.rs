@@ -10,7 +10,8 @@ use core::f64::consts::PI;
 
 use glam::DVec3;
 use multiversion::multiversion;
-use nephroid_analytic::scene::Entry;
+use nephroid_analytic::class::PathClass;
+use nephroid_analytic::scene::{Entry, Kind};
 
 use crate::film::Film;
 use crate::geometry::chains::Chains;
@@ -26,9 +27,9 @@ use super::camera_paths::{CAUSTIC, CameraPaths, DIRECT, select};
 use super::defect::Defect;
 use super::deviation::{Deviation, Sound};
 use super::kernel::{AngleKernel, Kernel};
-use super::plan::{next_event_plan, plan_of};
+use super::plan::{next_event_plan, not_sampled, plan_of};
 use super::regularized_chains::RegularizedChains;
-use super::settings::Settings;
+use super::settings::{Mollified, Settings};
 use super::{
     ClassPlan, Integrator, Plan, Prepared, Technique, Treatment, Unsupported, regularizes,
 };
@@ -59,7 +60,11 @@ impl Integrator for PtReg {
     }
 
     fn plan(&self, entry: &Entry) -> Plan {
+        let plane = matches!(entry.kind, Kind::PlanarChains(_));
         plan_of(entry, |class| {
+            if self.settings.mollified == Mollified::Every && class.light.len() > 1 {
+                return every_vertex(class, self.kernel, plane);
+            }
             next_event_plan(class).unwrap_or_else(|| ClassPlan {
                 class,
                 treatment: Treatment::Regularized(Technique::Camera),
@@ -85,6 +90,26 @@ impl Integrator for PtReg {
         let overrides = Defect::new(self.settings.fault).overrides();
         let (kernel, settings) = (self.kernel, self.settings);
         visit(entry, overrides, Prepare { kernel, settings })
+    }
+}
+
+/// The plan for a chain of which every vertex is mollified.
+fn every_vertex(class: PathClass, kernel: Kernel, among_plane_mirrors: bool) -> ClassPlan {
+    if !among_plane_mirrors {
+        return not_sampled(
+            class,
+            "every vertex of a chain is mollified among plane mirrors only; the one next to the light, on any surface",
+        );
+    }
+    let count = class.light.len();
+    ClassPlan {
+        class,
+        treatment: Treatment::Regularized(Technique::CameraEveryVertex),
+        reason: format!(
+            "irregular: {kernel} kernels on the angles at all {count} specular vertices, d = {}; cosine-distributed \
+             direction from the floor, uniform ones from the mirrors",
+            2 * count
+        ),
     }
 }
 

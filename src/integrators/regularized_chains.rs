@@ -2,8 +2,14 @@
 //!
 //! The formulas are those of `pt_reg.rs`. A direction drawn at the floor point is traced back along every chain of the
 //! surface, exactly up to the interaction next to the light, which is mollified.
+//!
+//! With every vertex mollified ([`Mollified::Every`], chains among plane mirrors) the path goes on from each mirror in a
+//! direction that is uniform over the hemisphere, with 2π R φ(g), g the angle to the exact reflection, and is connected to the
+//! light from the last one with R φ(g). The directions know nothing of the kernels, as where two subpaths are connected
+//! between two specular vertices; drawn from the kernel, all but the last would bring no variance with them, and no
+//! α⁻²ᵏ.
 
-use core::f64::consts::PI;
+use core::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use nephroid_analytic::class::PathClass;
@@ -11,6 +17,7 @@ use nephroid_analytic::class::PathClass;
 use crate::film::Film;
 use crate::geometry::chains::Chains;
 use crate::geometry::light::Light;
+use crate::geometry::manifold::tangents;
 use crate::geometry::scene::Scene;
 use crate::geometry::turn::sin_cos_of_turns;
 use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
@@ -22,7 +29,7 @@ use super::connection::to_light;
 use super::defect::Defect;
 use super::deviation::Deviation;
 use super::kernel::{AngleKernel, Kernel};
-use super::settings::Settings;
+use super::settings::{Mollified, Settings};
 
 /// Regularized connections along chains.
 pub(super) struct RegularizedChains<L, S> {
@@ -61,6 +68,36 @@ impl<L: Light, S: Chains> RegularizedChains<L, S> {
                 Some((chain, layer, common * self.defect.class_scale(class)))
             })
             .collect()
+    }
+
+    /// The same with every one of `count` vertices mollified. `turn` draws two uniforms for the direction at a vertex.
+    fn sample_of_every(
+        &self,
+        count: usize,
+        origin: DVec3,
+        direction: DVec3,
+        kernel: &AngleKernel,
+        turn: impl Fn(u64) -> (f64, f64),
+    ) -> Option<f64> {
+        let Self { scene, .. } = self;
+        let mut vertex = scene.surface.reflection(origin, direction)?;
+        let mut weight = vertex.weight;
+        for k in 1..count as u64 {
+            let (u, v) = turn(k);
+            let (sine, cosine) = sin_cos_of_turns(u);
+            let r = f64::sqrt(1.0 - v * v);
+            let [e1, e2] = tangents(vertex.normal);
+            let onwards = e1 * (r * cosine) + e2 * (r * sine) + vertex.normal * v;
+            let difference = vertex.direction - onwards;
+            let squared_chord = difference.dot(difference);
+            if !(squared_chord < kernel.support) {
+                return None;
+            }
+            vertex = scene.surface.reflection(vertex.point, onwards)?;
+            weight *= TAU * kernel.density(squared_chord) * vertex.weight;
+        }
+        let light = to_light(scene, &vertex, kernel.support)?;
+        Some(weight * light.irradiance * kernel.density(light.squared_chord))
     }
 
     /// An irradiance sample of a chain at a floor point, but for the constants of the class.
@@ -121,7 +158,15 @@ impl<L: Light, S: Chains> Prepared for RegularizedChains<L, S> {
                 let (r, z) = defect.scattered(height[i]);
                 let direction = DVec3::new(r * cosine, r * sine, z);
                 for &(chain, layer, scale) in &caustics {
-                    if let Some(sample) = self.sample(chain, vertex, direction, &kernel) {
+                    let count = scene.surface.classes()[chain].light.len();
+                    let sample = if self.settings.mollified == Mollified::Every && count > 1 {
+                        // The chains of a path have directions of their own.
+                        let turn = |k| stream.trial(first + i as u64, k + 16 * chain as u64);
+                        self.sample_of_every(count, vertex, direction, &kernel, turn)
+                    } else {
+                        self.sample(chain, vertex, direction, &kernel)
+                    };
+                    if let Some(sample) = sample {
                         splat(layer, defect.sample(scale * sample, pixels));
                     }
                 }

@@ -1,5 +1,7 @@
 //! How an integrator is built: its kernel, and the defect it is given on purpose.
 
+use core::str::FromStr;
+
 use super::fault::Fault;
 use super::kernel::Kernel;
 
@@ -8,9 +10,33 @@ use super::kernel::Kernel;
 pub struct Settings {
     /// The mollifier of methods that regularize; `None` is the method's default. Ignored by the others.
     pub kernel: Option<Kernel>,
+    /// Which specular vertices of a chain `pt-reg` mollifies. Ignored by the others.
+    pub mollified: Mollified,
     /// A defect, to test what judges the integrator.
     pub fault: Option<Fault>,
     /// Whether photons are limited to those that can land within the radius of what the camera sees: for studies of small
     /// parts of a scene. Methods without photons and scenes of chains ignore it.
     pub aims_photons: bool,
+}
+
+/// Which specular vertices of a chain are mollified.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mollified {
+    /// The one next to the light; all others are exact.
+    #[default]
+    NextToLight,
+    /// Each of them, independently: d = 2k for k vertices. Chains of two or more only among plane mirrors.
+    Every,
+}
+
+impl FromStr for Mollified {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "light" => Ok(Mollified::NextToLight),
+            "all" => Ok(Mollified::Every),
+            _ => Err("expected light or all".to_owned()),
+        }
+    }
 }

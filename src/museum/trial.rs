@@ -12,6 +12,7 @@ use crate::judge::finding::State;
 use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, LEVEL, Levels};
 use crate::regions::Regions;
 use crate::verify::effort::Effort;
+use crate::verify::excluded::Kept;
 use crate::verify::expected::{Expected, Truths};
 use crate::verify::gather::{End, Evidence, gather_until};
 use crate::verify::replicates::{Canvas, FINAL, Seeds, Shape, run as run_replicates};
@@ -77,7 +78,12 @@ impl Hall {
         let (width, height) = (entry.camera.width, entry.camera.height);
         let pair = Pair::new(scene, 0, &entry, plan);
         let shape = first_shape(sound.as_ref(), &pair.plan, stand.bandwidth, &entry);
-        let regions = Regions::quadtree(width, height);
+        let whole = || Regions::quadtree(width, height);
+        let regions = if sound.has_infinite_variance_at_folds() {
+            Kept::of(&entry, None).map_or_else(whole, |kept| kept.regions)
+        } else {
+            whole()
+        };
         let kernel = None;
         let expected = self.truths.of(
             scene,

@@ -2,7 +2,7 @@
 //!
 //! An unbiased estimator that reaches a fold's light point by point has contributions like δ^(-1/2) at distance δ from the
 //! fold: tail index 2, no variance, no valid t test in a pixel that the fold crosses. Which pixels these are is known
-//! exactly: those of which a point that is seen on the floor is as near to a fold as the pixel is wide. They are no part
+//! exactly: those of which a point that is seen on the floor, directly or in a mirror, is as near to a fold as the pixel is wide. They are no part
 //! of the verdict, and how many they are and how much of the light they hold is printed with it.
 
 use nephroid_analytic::camera::Film;
@@ -11,6 +11,7 @@ use nephroid_analytic::scene::Entry;
 use rayon::prelude::*;
 
 use super::expected::Expected;
+use crate::integrators::Sight;
 use crate::regions::Regions;
 
 /// What was left out.
@@ -22,44 +23,71 @@ pub struct Excluded {
     pub energy: f64,
 }
 
-/// Per pixel, row by row from the top, whether the nearest fold (or cusp, or focus) of any class that ends on the floor is
-/// nearer to its centre than its farthest corner is, on the floor. A pixel that sees no floor is not crossed.
+/// Per pixel, row by row from the top, whether a fold (or cusp, or focus) of any class that ends on the floor crosses what the
+/// pixel sees of the floor, directly or through the specular surface: whether it is nearer to the point seen at the centre
+/// than the point seen at the farthest corner is. A pixel that sees no floor is not crossed. One that sees the floor in
+/// both ways, or in part, is crossed if the fold is as near to any of its points as another one is.
 pub fn crossed_by_folds(entry: &Entry) -> Vec<bool> {
     let (width, height) = (entry.camera.width, entry.camera.height);
-    let Some(truth) = FloorTruth::new(entry) else {
+    let (Some(truth), Some(sight)) = (FloorTruth::new(entry), Sight::new(entry)) else {
         return vec![false; width as usize * height as usize];
     };
-    let film = Film::new(&entry.camera);
-    let floor = |u: f64, v: f64| {
-        let d = film.direction(u, v);
-        let t = -film.position.z / d.z;
-        let point = (film.position.x + d.x * t, film.position.y + d.y * t);
-        (t > 0.0 && t.is_finite()).then_some(point)
-    };
-    let is_crossed = |k: u32| {
-        let (i, j) = (f64::from(k % width), f64::from(k / width));
-        let Some((x, y)) = floor(i + 0.5, j + 0.5) else {
-            return false;
-        };
-        if !truth.is_on_floor(x, y) {
-            return false;
-        }
-        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-        let reach = corners
-            .into_iter()
-            // A corner above the horizon is infinitely far.
-            .map(|(a, b)| {
-                floor(i + a, j + b).map_or(f64::INFINITY, |(p, q)| libm::hypot(p - x, q - y))
-            })
-            .fold(0.0, f64::max);
+    let is_near = |[x, y]: [f64; 2], reach: f64| {
         (0..truth.at(x, y).len())
             .filter_map(|class| truth.singularity(x, y, class))
             .any(|s| s.distance <= reach)
+    };
+    let is_crossed = |k: u32| {
+        let (i, j) = (f64::from(k % width), f64::from(k / width));
+        let seen = PLACES.map(|(a, b)| sight.floor_point(i + a, j + b));
+        let farthest = |[x, y]: [f64; 2]| {
+            let others = seen.iter().flatten();
+            others.fold(0.0, |far, ([p, q], _)| {
+                f64::max(far, libm::hypot(p - x, q - y))
+            })
+        };
+        let is_whole =
+            |(_, via): ([f64; 2], bool)| seen.iter().all(|s| s.is_some_and(|s| s.1 == via));
+        match seen[0] {
+            Some(centre) if is_whole(centre) => is_near(centre.0, farthest(centre.0)),
+            _ => {
+                // Where the floor ends, or a surface begins, what is missing is about as far as the rest, or unknown.
+                let points: Vec<_> = seen.iter().flatten().map(|s| s.0).collect();
+                let reach = points.iter().map(|&p| farthest(p)).fold(0.0, f64::max);
+                let pixel = sight_of_pixel(entry, i, j);
+                points.iter().any(|&p| is_near(p, reach.max(pixel)))
+            }
+        }
     };
     (0..width * height)
         .into_par_iter()
         .map(is_crossed)
         .collect()
+}
+
+/// The centre of a pixel and its corners.
+const PLACES: [(f64, f64); 5] = [(0.5, 0.5), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+
+/// How far the corners of a pixel are from its centre on the plane of the floor, whatever is in the way; infinite above the
+/// horizon.
+fn sight_of_pixel(entry: &Entry, i: f64, j: f64) -> f64 {
+    let film = Film::new(&entry.camera);
+    let floor = |(a, b): (f64, f64)| {
+        let d = film.direction(i + a, j + b);
+        let t = -film.position.z / d.z;
+        let point = (film.position.x + d.x * t, film.position.y + d.y * t);
+        (t > 0.0 && t.is_finite()).then_some(point)
+    };
+    let points = PLACES.map(floor);
+    let Some((x, y)) = points[0] else {
+        return f64::INFINITY;
+    };
+    points.into_iter().fold(0.0, |far, p| {
+        f64::max(
+            far,
+            p.map_or(f64::INFINITY, |(p, q)| libm::hypot(p - x, q - y)),
+        )
+    })
 }
 
 /// The part of an image in which a verdict is found, and the pixels that are left out of it.

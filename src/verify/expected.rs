@@ -179,6 +179,9 @@ pub const fn mollified(technique: Technique) -> Option<Mollified> {
     match technique {
         Technique::Camera => Some(Mollified::Camera),
         Technique::Merge => Some(Mollified::Merge),
-        Technique::NextEvent | Technique::LightTracing => None,
+        Technique::NextEvent
+        | Technique::LightTracing
+        | Technique::ManifoldSampling
+        | Technique::CameraEveryVertex => None,
     }
 }

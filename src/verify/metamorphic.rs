@@ -11,6 +11,7 @@ use std::time::Instant;
 use nephroid_analytic::camera::Bounded;
 use nephroid_analytic::scene::{Camera, Entry};
 
+use super::excluded::crossed_by_folds;
 use super::expected::{Expected, Truths};
 use super::run::{Job, Request, first_shape};
 use super::suite::Pair;
@@ -55,12 +56,23 @@ pub(super) struct Varied {
 const KEPT_BY_CROP: f64 = 0.25;
 
 /// For each integrator the pairs on which it may be varied: those with a cheap truth first, since more than one may be asked, of these
-/// those that claim the most classes, then in their order.
-fn candidates(pairs: &[Pair], integrators: usize) -> impl Iterator<Item = Vec<usize>> {
-    (0..integrators).filter_map(move |i| {
+/// those that claim the most classes, then in their order. Of a method whose variance is infinite at folds, the first whose image no
+/// fold crosses.
+fn candidates<'a>(
+    request: &'a Request,
+    pairs: &'a [Pair],
+) -> impl Iterator<Item = Vec<usize>> + 'a {
+    (0..request.integrators.len()).filter_map(move |i| {
         let of = |p: &usize| pairs[*p].integrator == i && pairs[*p].checks() > 0;
         let mut all: Vec<usize> = (0..pairs.len()).filter(of).collect();
         all.sort_by_key(|&p| (pairs[p].truth, core::cmp::Reverse(pairs[p].checks())));
+        if request.integrators[i].has_infinite_variance_at_folds() {
+            let entry = |p: &usize| &request.scenes[pairs[*p].scene].entry;
+            let whole = all
+                .into_iter()
+                .find(|p| !crossed_by_folds(entry(p)).contains(&true));
+            return whole.map(|p| vec![p]);
+        }
         (!all.is_empty()).then_some(all)
     })
 }
@@ -78,7 +90,7 @@ pub(super) fn jobs(
     if !request.variations {
         return Ok((jobs, not_run));
     }
-    for candidates in candidates(pairs, request.integrators.len()) {
+    for candidates in candidates(request, pairs) {
         for change in CHANGES {
             let chosen = match change {
                 Change::Scene(Variation::Cropped) => {
@@ -181,7 +193,7 @@ fn names(request: &Request, pair: &Pair) -> [String; 2] {
 
 /// What is said of them when they are not asked for.
 pub(super) fn left_out(request: &Request, pairs: &[Pair]) -> Vec<NotRun> {
-    candidates(pairs, request.integrators.len())
+    candidates(request, pairs)
         .map(|candidates| {
             let [scene, integrator] = names(request, &pairs[candidates[0]]);
             NotRun {

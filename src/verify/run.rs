@@ -28,6 +28,8 @@ const MERGING_ITERATIONS: u32 = 8;
 const PATHS_PER_PIXEL: u64 = 2;
 /// Fewest paths of a replicate.
 const FEWEST_PATHS: u64 = 1 << 15;
+/// Replicates that are judged as a whole are so many times shorter.
+const PART_WITHOUT_TILES: u64 = 4;
 
 /// What to verify.
 pub struct Request {
@@ -327,6 +329,12 @@ pub(crate) fn first_shape(
         1
     };
     let paths = (PATHS_PER_PIXEL * pixels).max(FEWEST_PATHS);
+    // Without tiles a replicate needs fewer paths, which such methods take their time for.
+    let paths = if integrator.has_infinite_variance_at_folds() {
+        paths / PART_WITHOUT_TILES
+    } else {
+        paths
+    };
     Shape {
         bandwidths: (0..iterations).map(|i| schedule.bandwidth(i)).collect(),
         paths_per_iteration: paths / u64::from(iterations),

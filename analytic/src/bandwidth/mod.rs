@@ -18,6 +18,7 @@ mod chart;
 mod clip;
 mod cubature;
 pub mod entry;
+pub mod every_vertex;
 mod eye;
 pub mod film;
 pub mod flatland;

@@ -3,6 +3,7 @@
 mod camera;
 mod kernels;
 mod light;
+mod manifold;
 mod numbers;
 
 use crate::entry;
@@ -126,6 +127,7 @@ pub fn all() -> impl Iterator<Item = &'static Exhibit> {
         .chain(camera::EXHIBITS)
         .chain(kernels::EXHIBITS)
         .chain(numbers::EXHIBITS)
+        .chain(manifold::EXHIBITS)
 }
 
 /// Scenes of the museum alone: name and TOML.
