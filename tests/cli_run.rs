@@ -94,9 +94,9 @@ fn what_cannot_be_run_says_why_and_writes_nothing() {
             "pt, pt-reg, lt, pm, ppm",
         ),
         (
-            &["floor", "--integrator", "pm", "--kernel", "cone"],
+            &["floor", "--integrator", "pm", "--kernel", "vmf"],
             2,
-            "disc, epanechnikov",
+            "disc, epanechnikov, biweight, cone",
         ),
         (
             &["floor", "--integrator", "pm", "--kernel", "box"],

@@ -33,7 +33,8 @@ pub struct Options {
     /// Seed: the same seed gives the same numbers, on any number of threads.
     #[arg(long, value_name = "K", default_value_t = 1)]
     seed: u64,
-    /// Mollifier: cone, epanechnikov or vmf for an angle, disc or epanechnikov for a radius. Default: cone, disc.
+    /// Mollifier: cone, epanechnikov or vmf for an angle, disc, epanechnikov, biweight or cone
+    /// for a radius. Default: cone, disc.
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
     /// The technique whose expectation is the prediction. Default: the one that the integrator's plan names.

@@ -48,8 +48,8 @@ pub struct Args {
     /// Paths per iteration: what a step of a schedule is. Default: 262144, or four per pixel if that is more.
     #[arg(long, value_name = "N", value_parser = super::count)]
     paths_per_iteration: Option<u64>,
-    /// Kernel of the regularized classes: cone, epanechnikov or vmf on the angle (pt-reg); disc or epanechnikov on the
-    /// radius (pm, ppm).
+    /// Kernel of the regularized classes: cone, epanechnikov or vmf on the angle (pt-reg); disc, epanechnikov,
+    /// biweight or cone on the radius (pm, ppm, appm, vcm).
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
     /// Specular vertices of a chain that pt-reg mollifies: light (the one next to the light), or all, among plane mirrors.

@@ -51,7 +51,8 @@ pub struct Args {
     /// Angle [rad] or radius [m] of the mollifiers of regularizing integrators.
     #[arg(long, value_name = "A", default_value_t = BANDWIDTH, value_parser = bandwidth, allow_negative_numbers = true)]
     bandwidth: f64,
-    /// Mollifier: cone, epanechnikov or vmf for an angle, disc or epanechnikov for a radius. Default: cone, disc.
+    /// Mollifier: cone, epanechnikov or vmf for an angle, disc, epanechnikov, biweight or cone
+    /// for a radius. Default: cone, disc.
     #[arg(long, value_name = "K")]
     kernel: Option<Kernel>,
     /// The most paths of one scene and integrator; what is undecided then is said to be. Default: the effort's.

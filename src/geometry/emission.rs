@@ -108,6 +108,11 @@ impl Point {
         self.cap(1.0)
     }
 
+    /// Uniform over all directions downwards.
+    pub fn lower_hemisphere(&self) -> Cap {
+        self.cap(0.0)
+    }
+
     /// Uniform over the smallest downward cap that contains the convex hull of `targets`, or over the sphere if part of
     /// the hull is above the light. (A cap of at most a hemisphere is geodesically convex: it contains the hull of what
     /// it contains.)

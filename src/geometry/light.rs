@@ -3,15 +3,16 @@
 use glam::DVec3;
 
 use super::emission::{Beam, Cap, Cone, Emitter};
+use super::tracer::Emission;
 
 /// A light that illuminates a point from one direction.
 pub trait Light: Copy + Send + Sync + 'static {
     /// Whether its light is parallel.
     const IS_DISTANT: bool;
     /// How photons start.
-    type Emitter: Emitter;
+    type Emitter: Emitter + Into<Emission>;
     /// How photons start that are aimed at one thing.
-    type Narrow: Emitter;
+    type Narrow: Emitter + Into<Emission>;
 
     /// Photons over everything that can reach the convex hull of `targets`, and little else.
     fn aimed(&self, targets: &[DVec3]) -> Self::Emitter;
@@ -26,6 +27,10 @@ pub trait Light: Copy + Send + Sync + 'static {
 
     /// The same where nothing that stands in the photons' way is higher than `highest` [m].
     fn spread(&self, targets: &[DVec3], highest: f64) -> Self::Emitter;
+
+    /// Photons over everything below a point light, or a cross-section of a directional one that covers the targets: for a
+    /// surface without bounds.
+    fn downwards(&self, targets: &[DVec3]) -> Self::Emitter;
 
     /// Direction from a point towards the light (not normalised) and the ray parameter of the light along it.
     fn towards(&self, point: DVec3) -> (DVec3, f64);
@@ -72,6 +77,10 @@ impl Light for Point {
         self.everywhere()
     }
 
+    fn downwards(&self, _: &[DVec3]) -> Cap {
+        self.lower_hemisphere()
+    }
+
     #[inline(always)]
     fn towards(&self, point: DVec3) -> (DVec3, f64) {
         (self.position - point, 1.0)
@@ -115,6 +124,10 @@ impl Light for Directional {
 
     fn spread(&self, targets: &[DVec3], highest: f64) -> Beam {
         self.beam(targets, highest)
+    }
+
+    fn downwards(&self, targets: &[DVec3]) -> Beam {
+        self.towards_hull(targets)
     }
 
     #[inline(always)]

@@ -32,6 +32,7 @@ pub mod scene;
 pub mod slab;
 pub mod specular;
 pub mod sphere_cap;
+pub mod tracer;
 pub mod turn;
 pub mod underwater;
 pub mod water;

@@ -59,6 +59,33 @@ pub struct Landing {
     pub via: bool,
 }
 
+impl<L, S> Scene<L, S> {
+    /// Corners of a rectangle of the floor that contains all of it that is in the frame.
+    pub fn seen_floor(&self) -> Vec<DVec3> {
+        let mut corners = self.floor.hull();
+        let (columns, rows) = self.camera.size();
+        let eye = self.camera.position;
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for (u, v) in [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)] {
+            let direction = self.camera.direction(u, v);
+            let t = Floor::meet(eye, direction);
+            if !(t < f64::INFINITY) {
+                // The horizon is in the frame.
+                return corners;
+            }
+            let point = eye + direction * t;
+            (low, high) = (low.min(point), high.max(point));
+        }
+        for corner in &mut corners {
+            // Rounding at the frame's border: a margin far above it.
+            let margin = 1e-9 * (high - low);
+            corner.x = corner.x.min(high.x + margin.x).max(low.x - margin.x);
+            corner.y = corner.y.min(high.y + margin.y).max(low.y - margin.y);
+        }
+        corners
+    }
+}
+
 impl<L: Light, S: Specular> Scene<L, S> {
     /// Follows a ray to the floor, through at most one specular interaction.
     #[inline(always)]

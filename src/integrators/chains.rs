@@ -36,7 +36,7 @@ const LONGEST_STRIDE: u64 = 16;
 
 impl<L: Light, S: Chains> LightChains<L, S> {
     pub(super) fn new(scene: Scene<L, S>, defect: Defect) -> Self {
-        let seen = seen_floor(&scene);
+        let seen = scene.seen_floor();
         let targets: Vec<_> = (0..scene.surface.classes().len())
             .map(|chain| scene.surface.targets(chain, &seen))
             .collect();
@@ -112,31 +112,6 @@ impl<L: Light, S: Chains> LightChains<L, S> {
         let weight = leg.weight * self.defect.beside_cosine(cosine);
         Some((column, row, weight * density))
     }
-}
-
-/// Corners of a rectangle of the floor that contains all of it that is in the frame.
-fn seen_floor<L, S>(scene: &Scene<L, S>) -> Vec<DVec3> {
-    let mut corners = scene.floor.hull();
-    let (columns, rows) = scene.camera.size();
-    let eye = scene.camera.position;
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for (u, v) in [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)] {
-        let direction = scene.camera.direction(u, v);
-        let t = Floor::meet(eye, direction);
-        if !(t < f64::INFINITY) {
-            // The horizon is in the frame.
-            return corners;
-        }
-        let point = eye + direction * t;
-        (low, high) = (low.min(point), high.max(point));
-    }
-    for corner in &mut corners {
-        // Rounding at the frame's border: a margin far above it.
-        let margin = 1e-9 * (high - low);
-        corner.x = corner.x.min(high.x + margin.x).max(low.x - margin.x);
-        corner.y = corner.y.min(high.y + margin.y).max(low.y - margin.y);
-    }
-    corners
 }
 
 impl<L: Light, S: Chains> Prepared for LightChains<L, S> {

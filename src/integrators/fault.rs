@@ -26,6 +26,8 @@ pub enum Fault {
     FullAngleForHalf,
     /// The bandwidth in place of its square in the kernel's normalisation.
     RadiusForRadiusSquared,
+    /// The normalisation of another kernel on the distance: Epanechnikov's for a disc, the disc's for any other.
+    NormOfAnotherKernel,
     /// Bandwidths below 0.6 (rad or m) are raised to it, unannounced.
     BandwidthFloor,
     /// Bandwidths below 1e-7 are raised to it: never reached.

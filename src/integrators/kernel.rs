@@ -2,7 +2,9 @@
 //!
 //! On the angle g (of the sphere, bandwidth α): cone 1/(2π(1 - cos α)); Epanechnikov N (1 - g²/α²),
 //! 1/N = 2π(1 - 2 sin α/α + 2(1 - cos α)/α²); von Mises–Fisher N exp(κ(cos g - 1)), κ = 4/α², N = κ/(2π(1 - e^{-2κ})).
-//! On the distance d (of the plane, bandwidth r): disc 1/(πr²); Epanechnikov 2/(πr²) (1 - d²/r²).
+//! On the distance d (of the plane, bandwidth r): disc 1/(πr²); Epanechnikov 2/(πr²) (1 - d²/r²); biweight
+//! 3/(πr²) (1 - d²/r²)²; cone 3/(πr²) (1 - d/r). Normalised by ∫₀¹ (1 - s) ds = 1/2, ∫₀¹ (1 - s)² ds = 1/3 with s = d²/r² and
+//! ∫₀¹ (1 - t) 2t dt = 1/3 with t = d/r; and there is no smallest radius.
 
 use core::f64::consts::{PI, TAU};
 use core::fmt;
@@ -15,7 +17,7 @@ use super::fault::Fault;
 /// The shape of a mollifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// Constant within the angle α.
+    /// On an angle constant within α; on a distance the one that falls linearly to zero at r, a cone over the floor.
     Cone,
     /// Parabola within the angle α or the radius r.
     Epanechnikov,
@@ -23,24 +25,27 @@ pub enum Kernel {
     VonMisesFisher,
     /// Constant within the radius r.
     Disc,
+    /// Square of the parabola within the radius r.
+    Biweight,
 }
 
 impl Kernel {
-    const NAMES: [(&'static str, Kernel); 4] = [
+    const NAMES: [(&'static str, Kernel); 5] = [
         ("cone", Kernel::Cone),
         ("epanechnikov", Kernel::Epanechnikov),
         ("vmf", Kernel::VonMisesFisher),
         ("disc", Kernel::Disc),
+        ("biweight", Kernel::Biweight),
     ];
 
     /// Whether it is a kernel on the angle.
     pub const fn is_angular(self) -> bool {
-        !matches!(self, Kernel::Disc)
+        !matches!(self, Kernel::Disc | Kernel::Biweight)
     }
 
     /// Whether it is a kernel on the distance on the floor.
     pub const fn is_planar(self) -> bool {
-        matches!(self, Kernel::Disc | Kernel::Epanechnikov)
+        !matches!(self, Kernel::VonMisesFisher)
     }
 }
 
@@ -51,6 +56,7 @@ impl fmt::Display for Kernel {
             Kernel::Epanechnikov => "epanechnikov",
             Kernel::VonMisesFisher => "vmf",
             Kernel::Disc => "disc",
+            Kernel::Biweight => "biweight",
         })
     }
 }
@@ -63,7 +69,7 @@ impl FromStr for Kernel {
             .iter()
             .find(|(name, _)| *name == text)
             .map(|&(_, kernel)| kernel)
-            .ok_or_else(|| "expected cone, epanechnikov, vmf or disc".to_owned())
+            .ok_or_else(|| "expected cone, epanechnikov, vmf, disc or biweight".to_owned())
     }
 }
 
@@ -78,12 +84,12 @@ pub struct AngleKernel {
 }
 
 impl AngleKernel {
-    /// A kernel of bandwidth `alpha` in (0, π]; zero everywhere for anything else. `Disc` is taken for `Cone`.
+    /// A kernel of bandwidth `alpha` in (0, π]; zero everywhere for anything else. `Disc` and `Biweight` are taken for `Cone`.
     pub fn new(kernel: Kernel, alpha: f64, fault: Option<Fault>) -> Self {
         let half = sin(0.5 * alpha);
         let square = alpha * alpha;
         let mut norm = match kernel {
-            Kernel::Cone | Kernel::Disc => 1.0 / (4.0 * PI * half * half),
+            Kernel::Cone | Kernel::Disc | Kernel::Biweight => 1.0 / (4.0 * PI * half * half),
             Kernel::Epanechnikov => 1.0 / (TAU * epanechnikov_mass(alpha)),
             Kernel::VonMisesFisher => {
                 let kappa = 4.0 / square;
@@ -93,7 +99,7 @@ impl AngleKernel {
         match fault {
             Some(Fault::KernelNormalizedByPiAlphaSquared) => {
                 norm = match kernel {
-                    Kernel::Cone | Kernel::Disc => 1.0 / (PI * square),
+                    Kernel::Cone | Kernel::Disc | Kernel::Biweight => 1.0 / (PI * square),
                     Kernel::Epanechnikov | Kernel::VonMisesFisher => 2.0 / (PI * square),
                 };
             }
@@ -123,7 +129,7 @@ impl AngleKernel {
     /// The density [1/sr] at a squared chord below `support`.
     pub fn density(&self, squared_chord: f64) -> f64 {
         match self.kernel {
-            Kernel::Cone | Kernel::Disc => self.norm,
+            Kernel::Cone | Kernel::Disc | Kernel::Biweight => self.norm,
             Kernel::Epanechnikov => {
                 let half = 0.5 * sqrt(squared_chord);
                 let g = 2.0 * asin(if half < 1.0 { half } else { 1.0 });
@@ -147,24 +153,48 @@ fn epanechnikov_mass(a: f64) -> f64 {
     }
 }
 
-/// A kernel on the distance at one bandwidth: norm (1 + slope d²) for d² < r².
+/// What a kernel on the distance is within its radius, in units of its value at the centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profile {
+    /// 1 + slope d²: disc and Epanechnikov.
+    Parabola,
+    /// (1 + slope d²)²: biweight.
+    Square,
+    /// 1 - d/r: cone.
+    Linear,
+}
+
+/// A kernel on the distance at one bandwidth: norm × profile for d² < r².
 #[derive(Clone, Copy, Debug)]
 pub struct RadiusKernel {
     /// Value at the centre [1/m²].
     pub norm: f64,
-    /// 0 for the disc, -1/r² for Epanechnikov [1/m²].
+    /// 0 for the disc, -1/r² for Epanechnikov and biweight [1/m²].
     pub slope: f64,
     /// Radius [m].
     pub radius: f64,
+    /// What it is away from the centre.
+    pub profile: Profile,
 }
 
 impl RadiusKernel {
-    /// A kernel of bandwidth `radius` > 0 m; zero everywhere for anything else. Other than `Epanechnikov` it is a disc.
+    /// A kernel of bandwidth `radius` > 0 m; zero everywhere for anything else. `VonMisesFisher` is taken for `Disc`.
     pub fn new(kernel: Kernel, radius: f64, fault: Option<Fault>) -> Self {
         let square = radius * radius;
-        let (mut norm, slope) = match kernel {
-            Kernel::Epanechnikov => (2.0 / (PI * square), -1.0 / square),
-            _ => (1.0 / (PI * square), 0.0),
+        let of = match fault {
+            Some(Fault::NormOfAnotherKernel) => another(kernel),
+            _ => kernel,
+        };
+        let mut norm = match of {
+            Kernel::Epanechnikov => 2.0 / (PI * square),
+            Kernel::Biweight | Kernel::Cone => 3.0 / (PI * square),
+            Kernel::Disc | Kernel::VonMisesFisher => 1.0 / (PI * square),
+        };
+        let (slope, profile) = match kernel {
+            Kernel::Epanechnikov => (-1.0 / square, Profile::Parabola),
+            Kernel::Biweight => (-1.0 / square, Profile::Square),
+            Kernel::Cone => (0.0, Profile::Linear),
+            Kernel::Disc | Kernel::VonMisesFisher => (0.0, Profile::Parabola),
         };
         if fault == Some(Fault::RadiusForRadiusSquared) {
             norm *= radius;
@@ -174,6 +204,50 @@ impl RadiusKernel {
             norm: if valid { norm } else { 0.0 },
             slope: if valid { slope } else { 0.0 },
             radius: if valid { radius } else { 0.0 },
+            profile,
+        }
+    }
+
+    /// The density [1/m²] at a squared distance below r².
+    #[inline(always)]
+    pub fn density(&self, d2: f64) -> f64 {
+        let parabola = 1.0 + self.slope * d2;
+        self.norm
+            * match self.profile {
+                Profile::Parabola => parabola,
+                Profile::Square => parabola * parabola,
+                Profile::Linear => 1.0 - f64::sqrt(d2) / self.radius,
+            }
+    }
+}
+
+/// See [`Fault::NormOfAnotherKernel`].
+fn another(kernel: Kernel) -> Kernel {
+    match kernel {
+        Kernel::Disc => Kernel::Epanechnikov,
+        _ => Kernel::Disc,
+    }
+}
+
+impl Kernel {
+    /// Of a kernel on a distance: the β of the bias β r² ΔE of merging at a small radius, half of its second moment along an axis
+    /// over r² [theory: Δ is the Laplacian on the floor]. Used by methods that choose a radius.
+    pub fn bias_coefficient(self) -> f64 {
+        match self {
+            Kernel::Epanechnikov => 1.0 / 12.0,
+            Kernel::Biweight => 1.0 / 16.0,
+            Kernel::Cone => 3.0 / 40.0,
+            Kernel::Disc | Kernel::VonMisesFisher => 1.0 / 8.0,
+        }
+    }
+
+    /// Of a kernel on a distance: r² ∫ k² dA, by which the second moment of a photon's contribution grows as r falls.
+    pub fn roughness(self) -> f64 {
+        match self {
+            Kernel::Epanechnikov => 4.0 / (3.0 * PI),
+            Kernel::Biweight => 9.0 / (5.0 * PI),
+            Kernel::Cone => 3.0 / (2.0 * PI),
+            Kernel::Disc | Kernel::VonMisesFisher => 1.0 / PI,
         }
     }
 }
@@ -202,13 +276,30 @@ mod tests {
                 assert!((mass - 1.0).abs() < 1e-8, "{kernel} {alpha}: {mass}");
             }
         }
-        for kernel in [Kernel::Disc, Kernel::Epanechnikov] {
-            let k = RadiusKernel::new(kernel, 0.3, None);
-            let mass: f64 = (0..1000)
-                .map(|i| k.norm * (1.0 + k.slope * (f64::from(i) + 0.5) / 1000.0 * 0.09))
-                .sum::<f64>()
-                * (PI * 0.09 / 1000.0);
-            assert!((mass - 1.0).abs() < 1e-12);
+        for kernel in [
+            Kernel::Disc,
+            Kernel::Epanechnikov,
+            Kernel::Biweight,
+            Kernel::Cone,
+        ] {
+            let r = 0.3;
+            let k = RadiusKernel::new(kernel, r, None);
+            let value = |d2: f64| k.density(d2);
+            // dA = π d(d²): mass, second moment along an axis, and r² times the integral of the square.
+            let integral = |f: &dyn Fn(f64) -> f64| -> f64 {
+                let at = |i: i32| (f64::from(i) + 0.5) / 2e4 * r * r;
+                (0..20_000).map(|i| f(at(i))).sum::<f64>() * (PI * r * r / 2e4)
+            };
+            let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-7, "{kernel}: {a} {b}");
+            close(integral(&value), 1.0);
+            close(
+                integral(&|d2| 0.25 * d2 * value(d2)) / (r * r),
+                kernel.bias_coefficient(),
+            );
+            close(
+                integral(&|d2| value(d2) * value(d2)) * r * r,
+                kernel.roughness(),
+            );
         }
     }
 

@@ -175,6 +175,9 @@ pub fn all() -> Vec<Box<dyn Integrator>> {
 /// The names of the methods, in the order in which they are listed.
 pub const NAMES: [&str; 6] = ["pt", "pt-reg", "lt", "pm", "ppm", "sms"];
 
+/// The names of kernels on a distance, for messages.
+const PLANAR: &str = "disc, epanechnikov, biweight, cone";
+
 /// The method of a name.
 ///
 /// # Errors
@@ -198,11 +201,11 @@ pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, E
             Box::new(PtReg::new(settings))
         }
         "pm" => {
-            takes(Kernel::is_planar, "disc, epanechnikov")?;
+            takes(Kernel::is_planar, PLANAR)?;
             Box::new(Pm::new(settings))
         }
         "ppm" => {
-            takes(Kernel::is_planar, "disc, epanechnikov")?;
+            takes(Kernel::is_planar, PLANAR)?;
             Box::new(Ppm::new(settings))
         }
         _ => {

@@ -4,7 +4,7 @@
 //! consecutive photons, one per row. The sort is stable and sums have a fixed order (eight partial sums by position in
 //! the run), so the bits do not depend on the machine. A query costs the photons of nine cells.
 
-use super::kernel::RadiusKernel;
+use super::kernel::{Profile, RadiusKernel};
 
 /// Partial sums of a query.
 const LANES: usize = 8;
@@ -122,10 +122,46 @@ impl PhotonGrid {
         self.starts[0] = 0;
     }
 
-    /// Sum over the photons of flux × (1 + slope d²) for d² < r²: the irradiance, divided by the kernel's value at its
+    /// Sum over the photons of flux × profile for d² < r²: the irradiance, divided by the kernel's value at its
     /// centre. `reach` is how many cells below and above the point's own are looked at: one.
     #[inline(always)]
     pub(super) fn gather(&self, x: f64, y: f64, kernel: &RadiusKernel, reach: [i64; 2]) -> f64 {
+        match kernel.profile {
+            Profile::Parabola => {
+                let slope = kernel.slope;
+                self.sum(x, y, kernel.radius, reach, |d2, flux| {
+                    flux * (1.0 + slope * d2)
+                })
+            }
+            Profile::Square | Profile::Linear => self.gather_steeper(x, y, kernel, reach),
+        }
+    }
+
+    /// The same for kernels that are not a parabola, compiled once.
+    #[inline(never)]
+    fn gather_steeper(&self, x: f64, y: f64, kernel: &RadiusKernel, reach: [i64; 2]) -> f64 {
+        let (slope, inverse) = (kernel.slope, 1.0 / kernel.radius);
+        match kernel.profile {
+            Profile::Linear => self.sum(x, y, kernel.radius, reach, |d2, flux| {
+                flux * (1.0 - f64::sqrt(d2) * inverse)
+            }),
+            _ => self.sum(x, y, kernel.radius, reach, |d2, flux| {
+                let parabola = 1.0 + slope * d2;
+                flux * (parabola * parabola)
+            }),
+        }
+    }
+
+    /// Sum over the photons with d² < r² of a function of d² and flux.
+    #[inline(always)]
+    pub(super) fn sum(
+        &self,
+        x: f64,
+        y: f64,
+        radius: f64,
+        reach: [i64; 2],
+        of: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
         // Converted to whole numbers, which saturate, so that a point far away is simply outside.
         let column = f64::floor((x - self.low[0]) * self.inverse_cell) as i64;
         let row = f64::floor((y - self.low[1]) * self.inverse_cell) as i64;
@@ -139,7 +175,7 @@ impl PhotonGrid {
             clamp(column - below, columns),
             clamp(column + above, columns),
         );
-        let square = kernel.radius * kernel.radius;
+        let square = radius * radius;
         let mut sums = [0.0; LANES];
         for row in clamp(row - below, rows)..=clamp(row + above, rows) {
             let start = self.starts[row * self.columns + first] as usize;
@@ -149,7 +185,7 @@ impl PhotonGrid {
             let term = |px: f64, py: f64, flux: f64| {
                 let (dx, dy) = (px - x, py - y);
                 let d2 = dx * dx + dy * dy;
-                let value = flux * (1.0 + kernel.slope * d2);
+                let value = of(d2, flux);
                 if d2 < square { value } else { 0.0 }
             };
             let (ax, bx) = px.as_chunks::<LANES>();
@@ -196,8 +232,13 @@ mod tests {
                 photons.push(3.0 * u - 1.0, 0.4 * v, 0.5 + w);
             }
             let mut grid = PhotonGrid::default();
-            for kernel in [Kernel::Disc, Kernel::Epanechnikov] {
-                let kernel = RadiusKernel::new(kernel, radius, None);
+            for name in [
+                Kernel::Disc,
+                Kernel::Epanechnikov,
+                Kernel::Biweight,
+                Kernel::Cone,
+            ] {
+                let kernel = RadiusKernel::new(name, radius, None);
                 grid.build(&photons, radius);
                 for i in 0..500 {
                     let [u, v, _, _] = numbers(10_000 + i);
@@ -213,8 +254,15 @@ mod tests {
                             let (dx, dy) = (photons.x[j] - x, photons.y[j] - y);
                             let d2 = dx * dx + dy * dy;
                             let inside = d2 < radius * radius;
+                            let parabola = 1.0 - d2 / (radius * radius);
+                            let shape = match name {
+                                Kernel::Disc => 1.0,
+                                Kernel::Epanechnikov => parabola,
+                                Kernel::Biweight => parabola * parabola,
+                                _ => 1.0 - d2.sqrt() / radius,
+                            };
                             if inside {
-                                photons.flux[j] * (1.0 + kernel.slope * d2)
+                                photons.flux[j] * shape
                             } else {
                                 0.0
                             }

@@ -87,7 +87,7 @@ fn what_does_not_fit_is_refused_by_name() {
     refused("floor", camera, Kernel::Cone, None, "kind");
     refused("furnace", camera, Kernel::Cone, None, "kind");
     refused("dome", camera, Kernel::Disc, None, "kernel");
-    refused("dome", merge, Kernel::Cone, None, "kernel");
+    refused("dome", merge, Kernel::VonMisesFisher, None, "kernel");
     refused(
         "dome",
         merge,

@@ -173,7 +173,7 @@ impl Estimator {
         };
         if !fits {
             let allowed = match technique {
-                Technique::Merge => "disc, epanechnikov",
+                Technique::Merge => "disc, epanechnikov, biweight, cone",
                 _ => "cone, epanechnikov, vmf",
             };
             return Err(refused("kernel", &kernel.to_string(), allowed));

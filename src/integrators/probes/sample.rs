@@ -142,7 +142,7 @@ impl<L: Light, S: Chains> Sampler<L, S> {
                     let (dx, dy) = (px - x.x, py - x.y);
                     let d2 = dx * dx + dy * dy;
                     let inside = d2 < kernel.radius * kernel.radius;
-                    let value = kernel.norm * (1.0 + kernel.slope * d2);
+                    let value = kernel.density(d2);
                     if inside {
                         emitter.flux() * weight * value
                     } else {
