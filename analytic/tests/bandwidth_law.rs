@@ -1,6 +1,5 @@
 //! The law of small bandwidths against closed forms, and against exact expectations at two small bandwidths.
 
-mod law_places;
 mod mirror_entry;
 
 use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};

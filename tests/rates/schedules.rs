@@ -1,6 +1,6 @@
 //! Six schedules run, and behave as they are classified: path tracing, regularized, in a close-up of what `mirror-wall` reflects.
 //!
-//! 128 iterations of 512 paths, 64 replicates. Running means, their variances, and the numbers of contributions at
+//! 128 iterations of 512 paths, 128 replicates. Running means, their variances, and the numbers of contributions at
 //! n = 1, 2, 4, … are held to the exact finite sums by the study's own tests, which share a level of 1e-6 for a schedule (6e-6 in all).
 //! What they would catch is printed and bounded: half an interval of the bias, and the standard error of a variance.
 
@@ -13,7 +13,7 @@ use nephroid_analytic::schedule::{Classification, Expression, Number, Request, W
 use super::converge::converge_studies;
 use super::integrator;
 
-const SIZES: [u32; 3] = [128, 512, 64];
+const SIZES: [u32; 3] = [128, 512, 128];
 
 /// Where the running mean stands at the last n, and at n = 8.
 struct Course {
