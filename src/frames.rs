@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use nephroid_analytic::bandwidth::entry::Estimator;
 use nephroid_analytic::bandwidth::frame::FrameExpectation;
-use nephroid_analytic::bandwidth::tile::{Sampled, Tile, refine};
+use nephroid_analytic::bandwidth::tile::{Sampled, Tile, refine, together};
 use nephroid_analytic::bandwidth::{Convention, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
@@ -87,13 +87,15 @@ pub fn region(
     };
     let start = tiles(size, MOST_LEVELS).into_iter().map(moved).collect();
     let mut sum = Moments::default();
+    let mut errors = Vec::new();
     for s in cover(frame, class, start, tolerance) {
         let value = s.sum();
         sum.mean.value += value[0];
-        sum.mean.error += s.error[0];
         sum.second_moment.value += value[1];
-        sum.second_moment.error += s.error[1];
+        errors.push(s.error);
     }
+    let error = [0, 1].map(|k| together(errors.iter().map(|e| e[k])));
+    (sum.mean.error, sum.second_moment.error) = (error[0], error[1]);
     sum
 }
 
@@ -197,6 +199,7 @@ fn overlaps(tile: &Tile, area: &[bool], width: u32) -> bool {
 fn moments(tiles: &[Sampled], area: &[bool], width: u32) -> Moments {
     let pixels = area.iter().filter(|a| **a).count() as f64;
     let mut sum = Moments::default();
+    let mut errors = Vec::new();
     for s in tiles {
         let (mut value, mut inside) = ([0.0; 2], 0);
         for (k, pixel) in s.pixels.iter().enumerate() {
@@ -215,9 +218,10 @@ fn moments(tiles: &[Sampled], area: &[bool], width: u32) -> Moments {
             s.uneven
         };
         sum.mean.value += value[0] / pixels;
-        sum.mean.error += error[0] / pixels;
         sum.second_moment.value += value[1] / pixels;
-        sum.second_moment.error += error[1] / pixels;
+        errors.push(error);
     }
+    let error = [0, 1].map(|k| together(errors.iter().map(|e| e[k])) / pixels);
+    (sum.mean.error, sum.second_moment.error) = (error[0], error[1]);
     sum
 }

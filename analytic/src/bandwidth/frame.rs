@@ -18,7 +18,7 @@ use super::entry::{EntryExpectation, Estimator};
 use super::eye::Eye;
 use super::light::unknown;
 use super::quadrature::Pair;
-use super::tile::{Sampled, Tile, refine};
+use super::tile::{Sampled, Tile, refine, together};
 use crate::class::PathClass;
 use crate::scene::{Entry, InvalidParameter};
 
@@ -116,13 +116,15 @@ impl FrameExpectation {
         floor: [f64; 2],
     ) -> Moments {
         let mut sum = Moments::default();
+        let mut errors = Vec::new();
         for s in self.cover(class, columns, rows, tolerance, floor) {
             let value = s.sum();
             sum.mean.value += value[0];
-            sum.mean.error += s.error[0];
             sum.second_moment.value += value[1];
-            sum.second_moment.error += s.error[1];
+            errors.push(s.error);
         }
+        let error = [0, 1].map(|k| together(errors.iter().map(|e| e[k])));
+        (sum.mean.error, sum.second_moment.error) = (error[0], error[1]);
         sum
     }
 

@@ -1,7 +1,7 @@
 //! A part of a film on which a function is one polynomial, and what of it is seen.
 //!
-//! The function f is sampled at 4×4 Gauss points of a tile, on whatever side of an edge they are, and written as Legendre
-//! polynomials,
+//! The function f is sampled at 4×4 Gauss points of a tile (beyond an edge it takes what a plane through the others would have there: it
+//! may be something else) and written as Legendre polynomials,
 //!
 //! ```text
 //! c_pq = (2p + 1)(2q + 1) Σ w_i w_j f(a_i, b_j) P_p(a_i) P_q(b_j),     p, q ≤ 3
@@ -27,6 +27,12 @@ const POINTS: u32 = 8;
 const KINKED: f64 = 100.0;
 /// Standard deviation of the area that the points of a pixel with an edge find: 0.3 points for each of the row that it crosses.
 const EDGE: f64 = 0.3 / 22.6;
+/// Fewest samples through which a plane is laid, and the relative change of a function of which there are fewer.
+const FEWEST: usize = 5;
+const UNKNOWN: f64 = 0.05;
+/// Errors of tiles have any sign: so many standard deviations of their sum, and this part of the sum of their sizes.
+const DEVIATIONS: f64 = 3.0;
+const COHERENT: f64 = 0.1;
 /// Tiles are not halved below this [pixels].
 const SMALLEST: f64 = 1.0 / 16.0;
 
@@ -128,12 +134,12 @@ impl Sampled {
             .filter(|c| matches!(c, Cell::Cut { .. }))
             .count() as f64;
         let area = (tile.high[0] - tile.low[0]) * (tile.high[1] - tile.low[1]);
-        let fits = Fit::both(&tile, &at);
+        let fits = Fit::both(&tile, &cells, &sees, &at);
         for (k, fit) in fits.iter().enumerate() {
             for (out, cell) in sampled.pixels.iter_mut().zip(&cells) {
                 out[k] = cell.integral(fit, &tile);
             }
-            let last = fit.last_order();
+            let last = fit.last_order() + fit.filled;
             let better = sqrt(KINKED * last / fit.largest.max(f64::MIN_POSITIVE)).min(1.0);
             let whole = if cut == 0.0 && seen > area * (1.0 - 1e-9) {
                 better
@@ -242,40 +248,125 @@ struct Fit {
     largest: f64,
     /// Mean error of the samples.
     inner: f64,
+    /// What samples that were not taken may change.
+    filled: f64,
+}
+
+/// The middle of what is seen.
+fn middle(cells: &[Cell]) -> [f64; 2] {
+    // Of the pixel of which most is seen the point in the middle of the list: it is one that is seen.
+    let most = cells.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
+    match most {
+        Some(Cell::Whole { low, high }) => [0, 1].map(|k| 0.5 * (low[k] + high[k])),
+        Some(Cell::Cut { points, .. }) => points
+            .get(points.len() / 2)
+            .copied()
+            .unwrap_or([f64::NAN; 2]),
+        _ => [f64::NAN; 2],
+    }
+}
+
+/// The plane c0 + c1 a + c2 b of least squares; a constant where there are fewer samples than [`FEWEST`].
+fn plane(known: &[([f64; 2], f64)]) -> [f64; 3] {
+    let n = known.len().max(1) as f64;
+    let mean = known.iter().map(|(_, v)| v).sum::<f64>() / n;
+    let center = [0, 1].map(|k| known.iter().map(|(a, _)| a[k]).sum::<f64>() / n);
+    if known.len() < FEWEST {
+        return [mean, 0.0, 0.0];
+    }
+    let mut m = [0.0; 3];
+    let mut r = [0.0; 2];
+    for (a, v) in known {
+        let d = [a[0] - center[0], a[1] - center[1]];
+        m = [m[0] + d[0] * d[0], m[1] + d[0] * d[1], m[2] + d[1] * d[1]];
+        r = [r[0] + d[0] * (v - mean), r[1] + d[1] * (v - mean)];
+    }
+    let det = m[0] * m[2] - m[1] * m[1];
+    // All in one row.
+    if !(det > 1e-3 * (m[0] + m[2]) * (m[0] + m[2])) {
+        return [mean, 0.0, 0.0];
+    }
+    let slope = [
+        (m[2] * r[0] - m[1] * r[1]) / det,
+        (m[0] * r[1] - m[1] * r[0]) / det,
+    ];
+    [
+        mean - slope[0] * center[0] - slope[1] * center[1],
+        slope[0],
+        slope[1],
+    ]
 }
 
 impl Fit {
-    fn both(tile: &Tile, at: &impl Fn(f64, f64) -> Pair) -> [Fit; 2] {
+    /// Samples both functions at the nodes that are seen; the others get what a plane through those would have there.
+    fn both(
+        tile: &Tile,
+        cells: &[Cell],
+        sees: &impl Fn(f64, f64) -> bool,
+        at: &impl Fn(f64, f64) -> Pair,
+    ) -> [Fit; 2] {
         let rule = Rule::gauss(NODES);
-        let mut fits = [0, 1].map(|_| Fit {
-            c: [[0.0; NODES]; NODES],
-            largest: 0.0,
-            inner: 0.0,
-        });
-        let place = |k: usize, s: f64| tile.low[k] + s * (tile.high[k] - tile.low[k]);
+        let mut nodes = Vec::with_capacity(NODES * NODES);
         for (t, wt) in rule.iter() {
-            let b = legendre(2.0 * t - 1.0);
             for (s, ws) in rule.iter() {
-                let a = legendre(2.0 * s - 1.0);
-                let pair = at(place(0, s), place(1, t));
-                for (k, fit) in fits.iter_mut().enumerate() {
-                    let value = pair.value[k];
-                    for (q, row) in fit.c.iter_mut().enumerate() {
-                        for (p, c) in row.iter_mut().enumerate() {
-                            let scale = (2 * p + 1) as f64 * (2 * q + 1) as f64;
-                            *c += scale * ws * wt * value * a[p] * b[q];
-                        }
-                    }
-                    fit.largest = if value.is_nan() {
-                        f64::NAN
-                    } else {
-                        fit.largest.max(value.abs())
-                    };
-                    fit.inner += ws * wt * pair.error[k];
-                }
+                nodes.push(([2.0 * s - 1.0, 2.0 * t - 1.0], ws * wt));
             }
         }
-        fits
+        let place = |k: usize, a: f64| tile.low[k] + 0.5 * (1.0 + a) * (tile.high[k] - tile.low[k]);
+        let samples: Vec<Option<Pair>> = nodes
+            .iter()
+            .map(|([a, b], _)| {
+                let (u, v) = (place(0, *a), place(1, *b));
+                sees(u, v).then(|| at(u, v))
+            })
+            .collect();
+        let count = samples.iter().flatten().count();
+        // A corner that no node is in: one sample says what is there.
+        let lone = (count == 0).then(|| {
+            let [u, v] = middle(cells);
+            at(u, v)
+        });
+        [0, 1].map(|k| {
+            let known: Vec<([f64; 2], f64)> = (nodes.iter().zip(&samples))
+                .filter_map(|((a, _), s)| s.map(|s| (*a, s.value[k])))
+                .collect();
+            let errors = || samples.iter().flatten().chain(&lone).map(|s| s.error[k]);
+            let plane = match &lone {
+                Some(lone) => [lone.value[k], 0.0, 0.0],
+                None => plane(&known),
+            };
+            let value = |j: usize| {
+                let [a, b] = nodes[j].0;
+                let filled = plane[0] + plane[1] * a + plane[2] * b;
+                samples[j].map_or(filled, |s| s.value[k])
+            };
+            let mut fit = Fit {
+                c: [[0.0; NODES]; NODES],
+                largest: 0.0,
+                inner: errors().sum::<f64>() / count.max(1) as f64,
+                filled: 0.0,
+            };
+            for (j, (node, weight)) in nodes.iter().enumerate() {
+                let (a, b) = (legendre(node[0]), legendre(node[1]));
+                let value = value(j);
+                for (q, row) in fit.c.iter_mut().enumerate() {
+                    for (p, c) in row.iter_mut().enumerate() {
+                        let scale = (2 * p + 1) as f64 * (2 * q + 1) as f64;
+                        *c += scale * weight * value * a[p] * b[q];
+                    }
+                }
+                fit.largest = if value.is_nan() {
+                    f64::NAN
+                } else {
+                    fit.largest.max(value.abs())
+                };
+            }
+            if count < FEWEST {
+                // Nothing tells how much the function changes.
+                fit.filled = UNKNOWN * fit.largest;
+            }
+            fit
+        })
     }
 
     /// Size of what is of the highest order along an axis.
@@ -306,6 +397,17 @@ fn legendre(x: f64) -> [f64; NODES] {
     [1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x]
 }
 
+/// The error of a sum of parts from their errors: they are as likely too large as too small, but where kinks lie alike in many.
+pub fn together(errors: impl IntoIterator<Item = f64>) -> f64 {
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for e in errors {
+        sum += e;
+        squares += e * e;
+    }
+    // Of one or a few the sum of sizes is the better bound.
+    (DEVIATIONS * sqrt(squares) + COHERENT * sum).min(sum)
+}
+
 /// Splits tiles until the sum of their errors is small: `goal` tells from the sums of all what is allowed, `sample` samples several
 /// (in their order, perhaps side by side). At most `most` tiles are sampled.
 pub fn refine(
@@ -317,14 +419,14 @@ pub fn refine(
     let mut list = sample(&tiles);
     let mut looks = list.len();
     loop {
-        let (mut sum, mut error) = ([0.0; 2], [0.0; 2]);
+        let mut sum = [0.0; 2];
         for s in &list {
             let value = s.sum();
             for k in 0..2 {
                 sum[k] += f64::abs(value[k]);
-                error[k] += s.error[k];
             }
         }
+        let error = [0, 1].map(|k| together(list.iter().map(|s| s.error[k])));
         let mut goal = goal(sum).map(|g| g.max(f64::MIN_POSITIVE));
         if error[0].is_finite() && !error[1].is_finite() {
             // Second moments of photons of which the weights are not known.
@@ -337,11 +439,13 @@ pub fn refine(
         let part = |s: &Sampled| (0..2).map(|k| s.error[k] / goal[k]).fold(0.0, f64::max);
         let mut order: Vec<usize> = (0..list.len()).collect();
         order.sort_by(|&a, &b| part(&list[a]).total_cmp(&part(&list[b])).then(a.cmp(&b)));
-        let mut left = 0.0;
         let mut split = vec![false; list.len()];
+        let (mut left, mut squares) = (0.0, 0.0);
         for &k in &order {
-            left += part(&list[k]);
-            split[k] = left > 0.5;
+            let error = part(&list[k]);
+            left += error;
+            squares += error * error;
+            split[k] = (DEVIATIONS * sqrt(squares) + COHERENT * left).min(left) > 0.5;
         }
         let (mut kept, mut new) = (Vec::new(), Vec::new());
         for (s, split) in list.into_iter().zip(split) {
