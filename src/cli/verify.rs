@@ -168,10 +168,11 @@ fn request(args: &Args) -> Result<Request, Error> {
         integrators,
         left_out,
         effort: args.effort,
-        coverage: if args.effort == Effort::Quick && !explicit {
-            Coverage::Covering
-        } else {
-            Coverage::Everything
+        coverage: match args.effort {
+            _ if explicit => Coverage::Everything,
+            Effort::Quick => Coverage::Covering,
+            Effort::Standard => Coverage::Affordable,
+            Effort::Thorough => Coverage::Everything,
         },
         margin: args.margin.unwrap_or(args.effort.margin()),
         level: args.level,

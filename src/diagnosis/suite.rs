@@ -75,8 +75,7 @@ pub fn annotate(
             continue;
         };
         let method = request.integrators[integrator].as_ref();
-        let plan = method.plan(entry);
-        let pair = Pair::new(scene, integrator, entry, plan);
+        let pair = Pair::new(scene, entry, integrator, method);
         let (width, height) = (entry.camera.width, entry.camera.height);
         let shape = first_shape(method, &pair.plan, request.bandwidth, entry);
         let treatment = pair.plan[layer].treatment;

@@ -127,6 +127,11 @@ pub trait Integrator: Send + Sync {
         false
     }
 
+    /// Whether a path takes many times as long on the scene as one of another method.
+    fn is_dear(&self, _entry: &Entry) -> bool {
+        false
+    }
+
     /// Compiles a validated scene that the method supports into what it must do on it and no more.
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared>;
 }

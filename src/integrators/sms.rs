@@ -13,7 +13,7 @@
 //! folds cross the variance is infinite.
 
 use nephroid_analytic::class::PathClass;
-use nephroid_analytic::scene::Entry;
+use nephroid_analytic::scene::{Entry, Kind};
 
 use crate::film::Film;
 use crate::geometry::chains::Chains;
@@ -82,6 +82,13 @@ impl Integrator for Sms {
                     .to_owned(),
             }
         })
+    }
+
+    fn is_dear(&self, entry: &Entry) -> bool {
+        !matches!(
+            entry.kind,
+            Kind::Diffuse(_) | Kind::PlanarMirror(_) | Kind::FlatInterface(_)
+        )
     }
 
     fn has_infinite_variance_at_folds(&self) -> bool {

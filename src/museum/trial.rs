@@ -74,9 +74,8 @@ impl Hall {
         let scene = self.scene(stand.scene)?;
         let entry = self.scenes[scene].1.clone();
         let sound = by_name(stand.integrator, &Settings::default())?;
-        let plan = sound.plan(&entry);
         let (width, height) = (entry.camera.width, entry.camera.height);
-        let pair = Pair::new(scene, 0, &entry, plan);
+        let pair = Pair::new(scene, &entry, 0, sound.as_ref());
         let shape = first_shape(sound.as_ref(), &pair.plan, stand.bandwidth, &entry);
         let whole = || Regions::quadtree(width, height);
         let regions = if sound.has_infinite_variance_at_folds() {

@@ -12,7 +12,7 @@ pub enum Effort {
     /// Margin 2 %, a covering subset of the pairs of scene and integrator.
     #[default]
     Quick,
-    /// Margin 1 %, every pair.
+    /// Margin 1 %, every pair whose truth and paths do not take minutes.
     Standard,
     /// Margin 0.5 %, every pair.
     Thorough,

@@ -29,6 +29,8 @@ pub struct LeftOut {
 pub enum Coverage {
     /// Each integrator on two entries or more, each entry by two integrators or more, where there are as many.
     Covering,
+    /// All but those whose truth or paths take minutes.
+    Affordable,
     /// All of them.
     Everything,
 }
@@ -44,6 +46,8 @@ pub struct Pair {
     pub plan: Plan,
     /// What it costs to know what it should find.
     pub truth: TruthCost,
+    /// Whether its paths take long.
+    pub has_dear_paths: bool,
 }
 
 /// What the truth of a pair costs, by what it is made of.
@@ -72,14 +76,21 @@ impl TruthCost {
 }
 
 impl Pair {
-    /// A scene and an integrator with what it does about the scene's classes.
-    pub fn new(scene: usize, integrator: usize, entry: &Entry, plan: Plan) -> Self {
+    /// The scene and the integrator at these positions.
+    pub fn new(scene: usize, entry: &Entry, position: usize, integrator: &dyn Integrator) -> Self {
+        let plan = integrator.plan(entry);
         Pair {
             scene,
-            integrator,
+            integrator: position,
             truth: TruthCost::of(entry, &plan),
+            has_dear_paths: integrator.is_dear(entry),
             plan,
         }
+    }
+
+    /// Whether its truth or its paths take minutes.
+    fn is_dear(&self) -> bool {
+        self.truth != TruthCost::Low || self.has_dear_paths
     }
 
     /// Positions of the classes that the integrator claims.
@@ -111,25 +122,32 @@ pub fn select(
     let mut not_run = Vec::new();
     for (s, subject) in scenes.iter().enumerate() {
         for (i, integrator) in integrators.iter().enumerate() {
-            let plan = integrator.plan(&subject.entry);
-            match without_truth(&subject.entry, integrator.as_ref(), &plan) {
+            let pair = Pair::new(s, &subject.entry, i, integrator.as_ref());
+            match without_truth(&subject.entry, integrator.as_ref(), &pair.plan) {
                 Some(reason) => not_run.push((s, i, reason)),
-                None => pairs.push(Pair::new(s, i, &subject.entry, plan)),
+                None => pairs.push(pair),
             }
         }
     }
-    if coverage == Coverage::Covering {
-        let keep = covering(&pairs, scenes.len(), integrators.len());
-        let mut kept = keep.iter();
-        pairs.retain(|p| {
-            let keep = *kept.next().unwrap_or(&true);
-            if !keep {
-                not_run.push((p.scene, p.integrator, "not in the quick subset".to_owned()));
-            }
-            keep
-        });
-        not_run.sort();
-    }
+    let keep = match coverage {
+        Coverage::Covering => covering(&pairs, scenes.len(), integrators.len()),
+        Coverage::Affordable => pairs.iter().map(|p| !p.is_dear()).collect(),
+        Coverage::Everything => vec![true; pairs.len()],
+    };
+    let mut kept = keep.iter();
+    pairs.retain(|p| {
+        let keep = *kept.next().unwrap_or(&true);
+        if !keep {
+            let reason = if p.is_dear() {
+                "takes minutes: at thorough, or with --scene and --integrator"
+            } else {
+                "not in the quick subset"
+            };
+            not_run.push((p.scene, p.integrator, reason.to_owned()));
+        }
+        keep
+    });
+    not_run.sort();
     let name = |(s, i, reason): (usize, usize, String)| NotRun {
         scene: scenes[s].entry.name.clone(),
         integrator: integrators[i].name().to_owned(),
@@ -159,9 +177,9 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
         })
 }
 
-/// Marks a covering subset. Each integrator takes the entries on which it claims the most classes, those with chains
-/// at finite bandwidth last, whose truth is dear; then entries that still lack integrators take those that claim the most. Ties go to the first. Pairs that claim nothing cost nothing
-/// and stay.
+/// Marks a covering subset. Each integrator takes the entries on which it claims the most classes, dear ones last; then
+/// entries that still lack integrators take those that claim the most. Ties go to the first. Pairs that claim nothing cost
+/// nothing and stay.
 fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
     let classes: Vec<usize> = pairs.iter().map(|p| p.claimed().len()).collect();
     let mut keep: Vec<bool> = classes.iter().map(|&c| c == 0).collect();
@@ -170,8 +188,9 @@ fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
             .filter(|&k| classes[k] > 0 && belongs(&pairs[k]))
             .collect();
         candidates.sort_by_key(|&k| {
-            let is_dear = pairs[k].truth == TruthCost::Chains;
-            (!keep[k], is_dear, core::cmp::Reverse(classes[k]))
+            let p = &pairs[k];
+            let cost = (p.is_dear(), p.truth);
+            (!keep[k], cost, core::cmp::Reverse(classes[k]))
         });
         for k in candidates.into_iter().take(COVER) {
             keep[k] = true;
