@@ -22,6 +22,8 @@ use crate::verify::suite::Pair;
 
 /// The most paths of a trial: what two cores draw in about ten seconds.
 pub const MOST_PATHS: u64 = 400_000_000;
+/// A path of a method that walks on specular surfaces takes so many times longer.
+const COST_OF_WALKS: u64 = 64;
 /// Replicates among which [`Check::Repeats`] looks for equal ones.
 const REPLICATES: u32 = 64;
 
@@ -125,6 +127,11 @@ impl Hall {
         };
         let SetUp { stand, entry, .. } = set_up;
         let integrator = by_name(stand.integrator, &settings)?;
+        let most_paths = if integrator.has_infinite_variance_at_folds() {
+            most_paths / COST_OF_WALKS
+        } else {
+            most_paths
+        };
         let seeds = Seeds::new(seed, stand.scene, stand.integrator);
         let prepared = integrator.prepare(entry);
         let prepared = prepared.as_ref();

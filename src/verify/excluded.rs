@@ -115,8 +115,14 @@ impl Kept {
             Some(_) => Regions::mask(width, height, &asked)?,
             None => Regions::image(width, height),
         };
+        // Without a fold in it, the image is what is left: there contributions are counted.
+        let regions = if pixels == 0 {
+            all.clone()
+        } else {
+            Regions::mask(width, height, &kept)?
+        };
         Some(Kept {
-            regions: Regions::mask(width, height, &kept)?,
+            regions,
             all,
             pixels,
         })

@@ -68,7 +68,7 @@ fn every_vertex_of_a_chain_of_two_has_its_exact_moments() {
         let exact = two_reflections(&scene, point, truth_kernel, alpha).unwrap();
         let scale = scene.floor.albedo / PI;
         let truth = scale * exact.mean.value;
-        assert!(exact.mean.error < 1e-3 * exact.mean.value, "{exact:?}");
+        assert!(exact.mean.error < 2e-3 * exact.mean.value, "{exact:?}");
         let replicates = 512;
         let measured = measure(prepared.as_ref(), &entry, alpha, replicates, paths);
         let (mean, error) = (measured.mean[layer], measured.error[layer]);
@@ -80,7 +80,7 @@ fn every_vertex_of_a_chain_of_two_has_its_exact_moments() {
             exact.mean.error / exact.mean.value
         );
         assert!(error < 0.035 * truth);
-        assert!((mean - truth).abs() < STANDARD_ERRORS * error + 1e-3 * truth);
+        assert!((mean - truth).abs() < STANDARD_ERRORS * error + 2e-3 * truth);
         // The spread of 512 replicates: 6 % at least, more by what is left of the skewness of a replicate.
         assert!((square - 1.0).abs() < 0.5, "{square}");
     }

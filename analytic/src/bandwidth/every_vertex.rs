@@ -20,8 +20,8 @@
 //! 2α where the kernels overlap. Gauss rules on these intervals, with a square-root substitution in ψ where the cap
 //! ends; the error is the difference of two orders.
 //!
-//! Kernels without an end (von Mises–Fisher) are not taken. **Accuracy**: as the error bound says; 1e-4 of the value at the
-//! default orders, for α from 0.01 to 0.6.
+//! Kernels without an end (von Mises–Fisher) are not taken. **Accuracy**: as the error bound says, about 1e-3 of the value: where
+//! the two supports part, the inner integral has kinks that the outer rules feel.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
