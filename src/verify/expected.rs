@@ -178,7 +178,8 @@ impl Truths {
 pub const fn mollified(technique: Technique) -> Option<Mollified> {
     match technique {
         Technique::Camera => Some(Mollified::Camera),
+        Technique::Symmetric => Some(Mollified::Symmetric),
         Technique::Merge => Some(Mollified::Merge),
-        Technique::NextEvent | Technique::LightTracing => None,
+        Technique::NextEvent | Technique::LightTracing | Technique::Bidirectional => None,
     }
 }
