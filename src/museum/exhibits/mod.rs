@@ -1,6 +1,7 @@
 //! What the museum shows.
 
 mod camera;
+mod combinations;
 mod kernels;
 mod light;
 mod numbers;
@@ -126,6 +127,7 @@ pub fn all() -> impl Iterator<Item = &'static Exhibit> {
         .chain(camera::EXHIBITS)
         .chain(kernels::EXHIBITS)
         .chain(numbers::EXHIBITS)
+        .chain(combinations::EXHIBITS)
 }
 
 /// Scenes of the museum alone: name and TOML.
