@@ -25,6 +25,12 @@ pub enum Dimension {
     SecondDirection = 3,
     /// Direction at the third.
     ThirdDirection = 4,
+    /// Direction at the first diffuse vertex of a light subpath, where a path has two subpaths.
+    LightDirection = 5,
+    /// Direction at its second.
+    SecondLightDirection = 6,
+    /// Direction at its third.
+    ThirdLightDirection = 7,
 }
 
 /// The dimension block of the first of a path's trials; those before it are for [`Dimension`].

@@ -211,7 +211,7 @@ fn regularized_pictures_of_curved_surfaces_are_as_expected() {
 fn bad_usage_is_exit_code_2_and_says_what_is_allowed() {
     for (args, allowed) in [
         (&["verify", "--scene", "saucer"][..], "mirror-wall"),
-        (&["verify", "--integrator", "bdpt"], "pt-reg"),
+        (&["verify", "--integrator", "mlt"], "pt-reg"),
         (&["verify", "--effort", "heroic"], "thorough"),
         (&["verify", "--margin", "0"], "1e-4 to 5e-1"),
         (&["verify", "--margin", "NaN"], "1e-4 to 5e-1"),
@@ -235,7 +235,7 @@ fn bad_usage_is_exit_code_2_and_says_what_is_allowed() {
             "radians",
         ),
         (&["explain", "saucer"], "mirror-wall"),
-        (&["explain", "cup", "--integrator", "bdpt"], "pt-reg"),
+        (&["explain", "cup", "--integrator", "mlt"], "pt-reg"),
     ] {
         let output = nephroid(args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");
@@ -262,4 +262,10 @@ fn explain_says_what_is_irregular_and_why() {
     assert_eq!(class["irregular"], true);
     assert_eq!(class["technique"], "camera");
     assert!(!class["reason"].as_str().unwrap().is_empty());
+    assert_eq!(class["mollified_vertex"], 1);
+    assert_eq!(class["techniques"][0]["s"], 1);
+    assert_eq!(class["techniques"][0]["t"], 4);
+    // One connection is possible with s = 1, and it ends in a specular vertex.
+    assert_eq!(class["edges"][0]["ends"], "L-S");
+    assert_eq!(class["edges"][0]["singular"], true);
 }

@@ -1,16 +1,19 @@
 //! `nephroid explain`: what each integrator does about each path class of a scene, and why.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::entry;
 use crate::error::Error;
 use crate::exit;
-use crate::integrators::{Integrator, Technique, Treatment, all, by_name};
+use crate::geometry::tracer::Extent;
+use crate::integrators::details::{CompiledScene, Details, Drawn, Reach, Visibility};
+use crate::integrators::{ClassPlan, Integrator, Technique, Treatment, all, by_name};
 
 /// Show the path classes of a scene, how each integrator samples them, and which are irregular for it.
 ///
-/// A path is irregular for a method if every edge that the method could sample or connect touches a singularity (a point
-/// or directional light, a specular surface, the pinhole): it can only be regularized, or not be sampled at all.
+/// A technique (s, t) traces s vertices from the light and t from the eye, and connects them. A path is irregular for a method
+/// if every edge that the method could connect touches a singularity (it ends in a specular vertex, or a light or pinhole
+/// without extent would have to be hit): it can only be regularized, or not be sampled at all.
 #[derive(clap::Args)]
 pub struct Args {
     /// A name from `nephroid list`, or a TOML file.
@@ -31,12 +34,20 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         None => all(),
     };
     let closure = entry.kind.closure();
-    let plans: Vec<_> = integrators.iter().map(|i| (i, i.plan(&entry))).collect();
+    let compiled = CompiledScene::new(&entry);
+    let plans: Vec<_> = integrators
+        .iter()
+        .map(|i| {
+            let plan = i.plan(&entry).into_iter();
+            let detailed = plan.map(|c| (compiled.details(i.family(), &c), c));
+            (i, detailed.collect::<Vec<_>>())
+        })
+        .collect();
     if args.json {
         let classes: Vec<_> = plans
             .iter()
             .flat_map(|(integrator, plan)| {
-                plan.iter().map(|c| {
+                plan.iter().map(|(details, c)| {
                     json!({
                         "integrator": integrator.name(),
                         "class": c.class.to_string(),
@@ -44,6 +55,12 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                         "treatment": treatment(c.treatment),
                         "technique": technique(c.treatment),
                         "reason": c.reason,
+                        "techniques": details.techniques.iter().map(drawn_json).collect::<Vec<_>>(),
+                        "edges": details.edges.iter().map(|e| {
+                            json!({ "ends": e.ends, "singular": e.singular })
+                        }).collect::<Vec<_>>(),
+                        "mollified_vertex": details.mollified,
+                        "emission": details.emission.map(extent_json),
                     })
                 })
             })
@@ -53,6 +70,8 @@ pub fn run(args: &Args) -> Result<u8, Error> {
             "scene": entry.name,
             "kind": entry.kind.name(),
             "closure": { "longest": closure.longest, "reason": closure.reason },
+            "reach": compiled.reach().iter().map(reach_json).collect::<Vec<_>>(),
+            "visibility": compiled.visibility().iter().map(visibility_json).collect::<Vec<_>>(),
             "classes": classes,
         });
         super::print(&format!("{answer:#}"));
@@ -69,9 +88,10 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         None => "complete, paths of any length:".to_owned(),
     };
     super::print(&with_wrapped(&complete, closure.reason));
+    print_scene(&compiled);
     for (integrator, plan) in &plans {
         super::print(&format!("\n{}: {}", integrator.name(), integrator.title()));
-        for c in plan {
+        for (details, c) in plan {
             let facts = format!(
                 "  {:<6} {:<9} {:<12} {:<14}",
                 c.class,
@@ -84,9 +104,63 @@ pub fn run(args: &Args) -> Result<u8, Error> {
                 technique(c.treatment).unwrap_or("-"),
             );
             super::print(&with_wrapped(&facts, &c.reason));
+            print_details(details, c);
         }
     }
     Ok(exit::PASS)
+}
+
+/// What holds for all methods: what a ray can meet, and where visibility is no question.
+fn print_scene(compiled: &CompiledScene) {
+    for Reach { from, to } in compiled.reach() {
+        let to = if to.is_empty() {
+            "nothing".to_owned()
+        } else {
+            to.join(", ")
+        };
+        super::print(&format!("from the {from} a ray can meet: {to}"));
+    }
+    for v in compiled.visibility() {
+        let test = if v.tested { "tested" } else { "not tested" };
+        let subject = format!("visibility of {}: {test},", v.between);
+        super::print(&with_wrapped(&subject, v.reason));
+    }
+}
+
+/// The edges of an irregular class, and what each technique draws.
+fn print_details(details: &Details, class: &ClassPlan) {
+    if is_irregular(class.treatment) {
+        let edges: Vec<_> = details.edges.iter().map(|e| e.ends.as_str()).collect();
+        let subject = format!("{:9}edges {}:", "", edges.join(", "));
+        super::print(&with_wrapped(&subject, "a specular vertex at each"));
+    }
+    for Drawn {
+        subpaths,
+        densities,
+    } in &details.techniques
+    {
+        let subject = format!("{:9}({}, {})", "", subpaths.light, subpaths.eye);
+        super::print(&with_wrapped(&subject, &densities.join("; ")));
+    }
+}
+
+fn drawn_json(drawn: &Drawn) -> Value {
+    json!({ "s": drawn.subpaths.light, "t": drawn.subpaths.eye, "densities": drawn.densities })
+}
+
+fn extent_json(extent: Extent) -> Value {
+    match extent {
+        Extent::SolidAngle(sr) => json!({ "solid_angle": sr }),
+        Extent::CrossSection(area) => json!({ "cross_section": area }),
+    }
+}
+
+fn reach_json(reach: &Reach) -> Value {
+    json!({ "from": reach.from, "to": reach.to })
+}
+
+fn visibility_json(v: &Visibility) -> Value {
+    json!({ "between": v.between, "tested": v.tested, "reason": v.reason })
 }
 
 /// A sentence in a column of its own, to the right of others, broken between words so that no line is longer than 110.
@@ -130,8 +204,10 @@ fn technique(treatment: Treatment) -> Option<&'static str> {
     Some(match technique {
         Technique::NextEvent => "next_event",
         Technique::LightTracing => "light_tracing",
+        Technique::Bidirectional => "bidirectional",
         Technique::Camera => "camera",
         Technique::CameraEveryVertex => "camera_every_vertex",
+        Technique::Symmetric => "symmetric",
         Technique::Merge => "merge",
         Technique::ManifoldSampling => "manifold_sampling",
     })

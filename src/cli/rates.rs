@@ -8,7 +8,7 @@ use nephroid_analytic::scene::{Entry, InvalidParameter};
 
 use crate::error::Error;
 use crate::exit;
-use crate::integrators::{Integrator, Kernel, Settings, by_name};
+use crate::integrators::{Heuristic, Integrator, Kernel, Settings, by_name};
 use crate::output::write_text;
 use crate::rates::Heading;
 use crate::rates::bias::LEVEL;
@@ -37,6 +37,9 @@ pub struct Options {
     /// for a radius. Default: cone, disc.
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
+    /// How bidirectional methods weight techniques that build the same paths: balance or power.
+    #[arg(long, value_name = "H", default_value_t)]
+    heuristic: Heuristic,
     /// The technique whose expectation is the prediction. Default: the one that the integrator's plan names.
     #[arg(long, value_name = "T")]
     technique: Option<Technique>,
@@ -59,6 +62,7 @@ impl Options {
         let settings = Settings {
             kernel: self.kernel,
             aims_photons,
+            heuristic: self.heuristic,
             ..Settings::default()
         };
         let integrator = by_name(&self.integrator, &settings)?;

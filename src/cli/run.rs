@@ -11,7 +11,7 @@ use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
 use crate::integrators::schedule::ALLOWED;
 use crate::integrators::{
-    Integrator, Kernel, Mollified, Plan, Schedule, Settings, Technique, Treatment, by_name,
+    Heuristic, Integrator, Kernel, Mollified, Plan, Schedule, Settings, Side, Treatment, by_name,
 };
 use crate::{entry, exit};
 
@@ -28,7 +28,7 @@ const DEFAULT_BANDWIDTH: f64 = 0.2;
 pub struct Args {
     /// A name from `nephroid list`, or a TOML file.
     scene: String,
-    /// pt, pt-reg, lt, pm, ppm or sms.
+    /// The short name of an integrator, such as pt-reg.
     #[arg(long, value_name = "NAME")]
     integrator: String,
     /// Paths over the whole image, such as 3e7. A path of pm and ppm is one photon and one camera path.
@@ -37,8 +37,8 @@ pub struct Args {
     /// Seed of the random numbers.
     #[arg(long, value_name = "K", default_value_t = 1)]
     seed: u64,
-    /// Bandwidth of the regularized classes: an angle in radians for pt-reg, a radius in metres for pm; the first radius
-    /// for ppm. Default: 0.2.
+    /// Bandwidth of the regularized classes: an angle in radians for pt-reg and bdpt-reg, a radius in metres for pm; the
+    /// first radius for ppm. Default: 0.2.
     #[arg(long, value_name = "A", conflicts_with = "schedule")]
     bandwidth: Option<f64>,
     /// Bandwidth per iteration n = 1, 2, …: a number, a list `0.3,0.2,0.1` whose last value stays, or an expression such as
@@ -48,13 +48,19 @@ pub struct Args {
     /// Paths per iteration: what a step of a schedule is. Default: 262144, or four per pixel if that is more.
     #[arg(long, value_name = "N", value_parser = super::count)]
     paths_per_iteration: Option<u64>,
-    /// Kernel of the regularized classes: cone, epanechnikov or vmf on the angle (pt-reg); disc, epanechnikov,
+    /// Kernel of the regularized classes: cone, epanechnikov or vmf on the angle (pt-reg, bdpt-reg); disc, epanechnikov,
     /// biweight or cone on the radius (pm, ppm, appm, vcm).
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
     /// Specular vertices of a chain that pt-reg mollifies: light (the one next to the light), or all, among plane mirrors.
     #[arg(long, value_name = "WHICH", default_value = "light")]
     mollified: Mollified,
+    /// How bidirectional methods weight techniques that build the same paths: balance or power.
+    #[arg(long, value_name = "H", default_value_t)]
+    heuristic: Heuristic,
+    /// Connect a mollified vertex on this side only, camera or light, with bdpt-reg. The expectation stays. Default: both.
+    #[arg(long, value_name = "SIDE")]
+    technique: Option<Side>,
     /// The EXR file to write.
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
@@ -66,6 +72,8 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let settings = Settings {
         kernel: args.kernel,
         mollified: args.mollified,
+        heuristic: args.heuristic,
+        side: args.technique,
         ..Settings::default()
     };
     let integrator = by_name(&args.integrator, &settings)?;
@@ -212,7 +220,7 @@ fn schedule(
     };
     let is_angle = plan
         .iter()
-        .any(|c| c.treatment == Treatment::Regularized(Technique::Camera));
+        .any(|c| matches!(c.treatment, Treatment::Regularized(t) if t.is_angular()));
     let (most, allowed) = if is_angle {
         (
             core::f64::consts::PI,

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use nephroid_analytic::bandwidth::SMALLEST_BANDWIDTH;
 
 use crate::error::Error;
-use crate::integrators::{Integrator, Kernel, NAMES, Settings, by_name};
+use crate::integrators::{Heuristic, Integrator, Kernel, NAMES, Settings, by_name};
 use crate::judge::hypotheses::LEVEL;
 use crate::mask::Mask;
 use crate::output::write_text;
@@ -55,6 +55,9 @@ pub struct Args {
     /// for a radius. Default: cone, disc.
     #[arg(long, value_name = "K")]
     kernel: Option<Kernel>,
+    /// How bidirectional methods weight techniques that build the same paths: balance or power.
+    #[arg(long, value_name = "H", default_value_t)]
+    heuristic: Heuristic,
     /// The most paths of one scene and integrator; what is undecided then is said to be. Default: the effort's.
     #[arg(long, value_name = "PATHS", value_parser = super::count)]
     budget: Option<u64>,
@@ -193,6 +196,7 @@ type Integrators = Vec<Box<dyn Integrator>>;
 fn integrators(args: &Args) -> Result<(Integrators, Vec<LeftOut>), Error> {
     let settings = Settings {
         kernel: args.kernel,
+        heuristic: args.heuristic,
         ..Settings::default()
     };
     let named = once_each(&args.integrators);

@@ -2,7 +2,6 @@
 
 use super::constants::{Named, candidates, names};
 use super::{Known, Subject, VARIED, shown, shown_names};
-use crate::integrators::Technique;
 use crate::verify::replicates::Shape;
 
 /// The phase of the replicates at half the bandwidth.
@@ -14,7 +13,7 @@ impl Subject<'_> {
     /// Names of a factor of a regularized class at a multiple of its bandwidths.
     fn names_at(&self, times: f64, [factor, error]: [f64; 2]) -> Vec<String> {
         let bandwidths = &self.shape.bandwidths;
-        let is_angle = matches!(self.truth, Known::Means(Technique::Camera, _));
+        let is_angle = matches!(self.truth, Known::Means(technique, _) if technique.is_angular());
         let mut list = candidates(self.entry, Some(times * bandwidths[0]));
         list.retain(|c| is_angle || !c.name.contains('α'));
         if let [_, .., last] = bandwidths[..] {

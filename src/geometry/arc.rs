@@ -61,6 +61,8 @@ impl Arc {
 }
 
 impl Specular for Arc {
+    const MEETS_ITSELF: bool = true;
+
     fn hull(&self) -> Vec<DVec3> {
         let mut corners = Vec::with_capacity(8);
         for x in [self.x_min, self.radius] {

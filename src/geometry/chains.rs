@@ -43,6 +43,9 @@ pub trait Chains: Copy + Send + Sync + 'static {
     /// Whether an interaction of unspecified kind, `S`, next to the light is a refraction.
     const REFRACTS: bool = false;
 
+    /// Whether a ray that leaves a vertex on the side of its normal can meet a surface again.
+    const MEETS_ITSELF: bool = false;
+
     /// The classes of the light that reaches the floor, one for each chain: direct light too, where it exists.
     fn classes(&self) -> &'static [PathClass];
 

@@ -77,6 +77,8 @@ impl Conic {
 }
 
 impl Chains for Conic {
+    const MEETS_ITSELF: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

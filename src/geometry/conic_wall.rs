@@ -77,6 +77,8 @@ impl ConicWall {
 }
 
 impl Chains for ConicWall {
+    const MEETS_ITSELF: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         &[PathClass::LDE, PathClass::LSDE]
     }

@@ -99,6 +99,8 @@ impl CupWall {
 }
 
 impl Chains for CupWall {
+    const MEETS_ITSELF: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

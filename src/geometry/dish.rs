@@ -65,6 +65,8 @@ impl Dish {
 }
 
 impl Chains for Dish {
+    const MEETS_ITSELF: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

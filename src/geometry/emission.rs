@@ -26,6 +26,13 @@ pub struct Cap {
     flux: f64,
 }
 
+impl Cap {
+    /// The directions that are drawn from [sr].
+    pub fn solid_angle(&self) -> f64 {
+        TAU * self.extent
+    }
+}
+
 impl Emitter for Cap {
     #[inline(always)]
     fn ray(&self, u: f64, v: f64) -> (DVec3, DVec3) {
@@ -50,6 +57,13 @@ pub struct Cone {
     /// 1 - cos of the angle.
     extent: f64,
     flux: f64,
+}
+
+impl Cone {
+    /// The directions that are drawn from [sr].
+    pub fn solid_angle(&self) -> f64 {
+        TAU * self.extent
+    }
 }
 
 impl Emitter for Cone {
@@ -152,6 +166,13 @@ pub struct Beam {
     corner: DVec3,
     extent: [f64; 2],
     flux: f64,
+}
+
+impl Beam {
+    /// The area of the cross-section perpendicular to the light that is drawn from [m²].
+    pub fn cross_section(&self) -> f64 {
+        -self.travel.z * self.extent[0] * self.extent[1]
+    }
 }
 
 impl Emitter for Beam {

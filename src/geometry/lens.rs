@@ -71,6 +71,7 @@ impl Lens {
 
 impl Chains for Lens {
     const REFRACTS: bool = true;
+    const MEETS_ITSELF: bool = true;
 
     fn classes(&self) -> &'static [PathClass] {
         self.classes

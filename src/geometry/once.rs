@@ -13,6 +13,7 @@ pub struct Once<S>(pub S);
 
 impl<S: Specular> Chains for Once<S> {
     const REFRACTS: bool = S::SEPARATES;
+    const MEETS_ITSELF: bool = S::MEETS_ITSELF;
 
     fn classes(&self) -> &'static [PathClass] {
         match (S::EXISTS, S::SEPARATES) {

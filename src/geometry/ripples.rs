@@ -204,6 +204,7 @@ impl<'a> Ray<'a> {
 
 impl Chains for Ripples {
     const REFRACTS: bool = true;
+    const MEETS_ITSELF: bool = true;
 
     fn classes(&self) -> &'static [PathClass] {
         self.classes

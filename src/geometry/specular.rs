@@ -23,6 +23,9 @@ pub trait Specular: Copy + Send + Sync + 'static {
     /// Whether every straight line from the floor to the light or to the camera is interrupted by the surface.
     const SEPARATES: bool = false;
 
+    /// Whether a ray that leaves the surface on its reflecting side can meet it again.
+    const MEETS_ITSELF: bool = false;
+
     /// The first meeting of the ray `origin + t direction`, t > 0.
     fn meet(&self, origin: DVec3, direction: DVec3) -> Meeting;
 

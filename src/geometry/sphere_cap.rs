@@ -54,6 +54,8 @@ impl SphereCap {
 }
 
 impl Chains for SphereCap {
+    const MEETS_ITSELF: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

@@ -47,6 +47,8 @@ impl Wedge {
 }
 
 impl Chains for Wedge {
+    const MEETS_ITSELF: bool = true;
+
     fn classes(&self) -> &'static [PathClass] {
         self.classes
     }

@@ -153,6 +153,26 @@ pub enum Fault {
     ReciprocalOffByOne,
     /// Specular manifold sampling: the first solution counts with the weight 1.
     ReciprocalForgotten,
+    /// The balance heuristic for the weights of one side, the power heuristic for those of the other.
+    HeuristicsMixed,
+    /// The density of camera subpaths not divided by the number of pixels in the weights of light tracing, and divided in
+    /// those of next event estimation.
+    MisPixelsForgotten,
+    /// In the weights of the light's side, the camera's density in solid angle for the one per area.
+    MisMeasuresMixed,
+    /// The same in the weights of both sides, which still sum to 1: more variance, no bias.
+    MisMeasuresWrong,
+    /// Both techniques of a mollified vertex with full weight.
+    MollifiedTwice,
+    /// Each technique of a mollified vertex evaluates the kernel of its own side: they estimate different integrals, and are
+    /// weighted as if they were the same.
+    SidesDiffer,
+    /// Classes that can be sampled are mollified as well.
+    RegularRegularized,
+    /// A path through a specular vertex next to the eye is weighted as if light tracing could build it too.
+    DeltaVertexWeighted,
+    /// Aimed photons carry the flux of the whole sphere.
+    SphereFluxOnAimedPhotons,
     /// The paths of one class are lost.
     ClassDropped(PathClass),
 }

@@ -26,10 +26,10 @@ const DIRECTIONS: [Dimension; 3] = [
 ];
 
 /// Most diffuse vertices of a path.
-const VERTICES: usize = DIRECTIONS.len() + 1;
+pub(super) const VERTICES: usize = DIRECTIONS.len() + 1;
 
 /// Layer of LDᵏE for k = 1, 2, …, where the film has one, and what a lost class is multiplied by.
-fn layers(film: &Film, defect: &Defect) -> [Option<(usize, f64)>; VERTICES] {
+pub(super) fn layers(film: &Film, defect: &Defect) -> [Option<(usize, f64)>; VERTICES] {
     core::array::from_fn(|k| {
         let class = PathClass {
             diffuse: k as u8 + 1,

@@ -26,6 +26,7 @@ use super::defect::Defect;
 use super::deviation::{Deviation, Sound};
 use super::furnace::LightWalks;
 use super::plan::{not_sampled, plan_of, walk_plan};
+use super::sampleable::Family;
 use super::settings::Settings;
 use super::{ClassPlan, Fault, Integrator, Plan, Prepared, Technique, Treatment};
 
@@ -78,6 +79,10 @@ impl Integrator for Lt {
                 )
             }
         })
+    }
+
+    fn family(&self) -> Family {
+        Family::LightTracing
     }
 
     fn prepare(&self, entry: &Entry) -> Box<dyn Prepared> {

@@ -6,18 +6,26 @@
 
 pub mod accumulate;
 mod aim_of_photons;
+mod bdpt;
+mod bidirectional;
+mod bidirectional_walks;
 mod camera_paths;
 mod chains;
 mod connection;
 mod defect;
+pub mod details;
 mod deviation;
 mod fault;
+#[cfg(test)]
+mod full_paths;
 mod furnace;
 pub mod kernel;
 mod lt;
 mod manifold_defect;
 mod manifold_walk;
 mod merged_chains;
+mod mis;
+mod mollified_vertex;
 mod photon_grid;
 mod photon_mapping;
 mod plan;
@@ -27,14 +35,18 @@ pub mod probes;
 mod pt;
 mod pt_reg;
 mod regularized_chains;
+pub mod sampleable;
 pub mod schedule;
 mod settings;
+mod shared_connections;
 mod sms;
 mod stage;
 
+pub use bdpt::Bdpt;
 pub use fault::Fault;
 pub use kernel::Kernel;
 pub use lt::Lt;
+pub use mis::{Heuristic, Side};
 pub use pm::Pm;
 pub use ppm::Ppm;
 pub use pt::Pt;
@@ -80,14 +92,25 @@ pub enum Technique {
     NextEvent,
     /// Light path connected to the pinhole.
     LightTracing,
+    /// All techniques that can build the path, combined.
+    Bidirectional,
     /// Regularized connection from the camera side.
     Camera,
     /// The same with every specular vertex of a chain mollified.
     CameraEveryVertex,
+    /// Regularized connections from both sides, of one symmetric value, combined.
+    Symmetric,
     /// Merging with photons within a radius.
     Merge,
     /// Newton's method on the specular constraint, from random points of the surface.
     ManifoldSampling,
+}
+
+impl Technique {
+    /// Whether it regularizes, with a kernel on an angle.
+    pub const fn is_angular(self) -> bool {
+        matches!(self, Technique::Camera | Technique::Symmetric)
+    }
 }
 
 /// Per class, in the order of the film's layers.
@@ -106,6 +129,17 @@ pub trait Integrator: Send + Sync {
 
     /// What the method does about each class of the scene.
     fn plan(&self, entry: &Entry) -> Plan;
+
+    /// The options of the command line, beside the kernel, that differ from their defaults: ` --heuristic power`, or nothing.
+    fn options(&self) -> String {
+        String::new()
+    }
+
+    /// Which of all techniques (s, t) the method has, merging apart. Next event estimation alone unless the method says
+    /// otherwise.
+    fn family(&self) -> sampleable::Family {
+        sampleable::Family::NextEvent
+    }
 
     /// The bandwidths that the method uses, iteration by iteration, when it is given one: that one unless it says
     /// otherwise. [`Prepared::iterate`] is given the bandwidth of its iteration.
@@ -178,7 +212,7 @@ pub fn all() -> Vec<Box<dyn Integrator>> {
 }
 
 /// The names of the methods, in the order in which they are listed.
-pub const NAMES: [&str; 6] = ["pt", "pt-reg", "lt", "pm", "ppm", "sms"];
+pub const NAMES: [&str; 8] = ["pt", "pt-reg", "lt", "pm", "ppm", "bdpt", "bdpt-reg", "sms"];
 
 /// The names of kernels on a distance, for messages.
 const PLANAR: &str = "disc, epanechnikov, biweight, cone";
@@ -204,6 +238,11 @@ pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, E
         "pt-reg" => {
             takes(Kernel::is_angular, "cone, epanechnikov, vmf")?;
             Box::new(PtReg::new(settings))
+        }
+        "bdpt" => Box::new(Bdpt::plain(settings)),
+        "bdpt-reg" => {
+            takes(Kernel::is_angular, "cone, epanechnikov, vmf")?;
+            Box::new(Bdpt::regularized(settings))
         }
         "pm" => {
             takes(Kernel::is_planar, PLANAR)?;

@@ -3,6 +3,9 @@
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use super::kernel::Kernel;
+use super::sampleable::{Family, Subpaths, mollified_vertex, possible};
+use super::settings::Settings;
 use super::{ClassPlan, Plan, Technique, Treatment};
 
 /// A plan from what is done about each of the scene's classes.
@@ -29,6 +32,74 @@ pub(super) fn next_event_plan(class: PathClass) -> Option<ClassPlan> {
         treatment: Treatment::Exact(Technique::NextEvent),
         reason: reason.to_owned(),
     })
+}
+
+/// The plan for a class of bidirectional path tracing; what no technique can build is mollified with a kernel, if there is
+/// one.
+pub(super) fn bidirectional_plan(
+    class: PathClass,
+    kernel: Option<Kernel>,
+    settings: &Settings,
+) -> ClassPlan {
+    let family = Family::Bidirectional;
+    let techniques = possible(class, family, None);
+    let words = |techniques: &[Subpaths]| {
+        let word = |t: &Subpaths| format!("({}, {})", t.light, t.eye);
+        let words: Vec<_> = techniques.iter().map(word).collect();
+        words.join(", ")
+    };
+    let heuristic = settings.heuristic;
+    let exact = |technique, reason| ClassPlan {
+        class,
+        treatment: Treatment::Exact(technique),
+        reason,
+    };
+    match (
+        techniques.as_slice(),
+        mollified_vertex(class, family),
+        kernel,
+    ) {
+        ([], Some(vertex), Some(kernel)) => {
+            let techniques = possible(class, family, Some(vertex));
+            let combined = match settings.side {
+                None => format!("combined by the {heuristic} heuristic"),
+                Some(side) => format!("the {side} side's alone"),
+            };
+            ClassPlan {
+                class,
+                treatment: Treatment::Regularized(Technique::Symmetric),
+                reason: format!(
+                    "irregular: every connection ends in a specular vertex; {kernel} kernel on the angle at the one next to                      the light, the same symmetric value for (s, t) = {}, {combined}",
+                    words(&techniques)
+                ),
+            }
+        }
+        ([], ..) => not_sampled(
+            class,
+            "irregular: every connection of a light subpath with a camera subpath ends in a specular vertex",
+        ),
+        ([only], ..) if only.light == 1 => exact(
+            Technique::NextEvent,
+            format!(
+                "only (s, t) = {} has no specular vertex at its connection: next event estimation, weight 1",
+                words(&techniques)
+            ),
+        ),
+        ([only], ..) if only.eye == 1 => exact(
+            Technique::LightTracing,
+            format!(
+                "only (s, t) = {} has no specular vertex at its connection: light tracing, weight 1",
+                words(&techniques)
+            ),
+        ),
+        _ => exact(
+            Technique::Bidirectional,
+            format!(
+                "(s, t) = {}, combined by the {heuristic} heuristic",
+                words(&techniques)
+            ),
+        ),
+    }
 }
 
 /// The plan for a class that the method cannot build.

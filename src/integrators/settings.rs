@@ -1,9 +1,10 @@
-//! How an integrator is built: its kernel, and the defect it is given on purpose.
+//! How an integrator is built: its kernel, how it combines techniques, and the defect it is given on purpose.
 
 use core::str::FromStr;
 
 use super::fault::Fault;
 use super::kernel::Kernel;
+use super::mis::{Heuristic, Side};
 
 /// How an integrator is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +13,10 @@ pub struct Settings {
     pub kernel: Option<Kernel>,
     /// Which specular vertices of a chain `pt-reg` mollifies. Ignored by the others.
     pub mollified: Mollified,
+    /// How techniques that build the same paths share them.
+    pub heuristic: Heuristic,
+    /// The only side on which bidirectional methods connect a mollified vertex; `None` for both.
+    pub side: Option<Side>,
     /// A defect, to test what judges the integrator.
     pub fault: Option<Fault>,
     /// Whether photons are limited to those that can land within the radius of what the camera sees: for studies of small

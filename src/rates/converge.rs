@@ -222,7 +222,14 @@ fn of_class(
     let select = |values: &[f64]| usable.iter().map(|&i| values[i]).collect::<Vec<f64>>();
     let mut variance = None;
     if technique.is_some() && law.variances.is_none() {
-        remarks.push("the variance of merging is predicted for regions that are small against the radius only".to_owned());
+        remarks.push(
+            if technique == Some(Technique::Symmetric) {
+                "the variance depends on how the two sides share a path: not predicted"
+            } else {
+                "the variance of merging is predicted for regions that are small against the radius only"
+            }
+            .to_owned(),
+        );
     } else if usable.len() >= 3 {
         let at = select(&n);
         let rows: Vec<Vec<f64>> = rows.iter().map(|r| select(&r.means)).collect();

@@ -64,7 +64,11 @@ impl Law {
         let schedule = request.predicted_schedule.unwrap_or(request.schedule);
         let schedule = bandwidths(schedule, request.iterations);
         let kernel = request.asked.kernel_of(technique);
-        let iterations = expected(view, class, technique, kernel, &schedule)?;
+        let mut iterations = expected(view, class, technique, kernel, &schedule)?;
+        if technique == Technique::Symmetric {
+            // Known for one side alone.
+            iterations.iter_mut().for_each(|e| e.hit = None);
+        }
         let (mut means, mut variances, mut errors) = (Vec::new(), Vec::new(), Vec::new());
         let mut contributions = Vec::new();
         let (mut sum, mut squares, mut fourths) = (Bounded::default(), 0.0, 0.0);
@@ -89,7 +93,12 @@ impl Law {
                 contributions.push(f64::from(request.asked.replicates) / kurtosis);
             }
         }
-        let is_known = technique != Technique::Merge || view.is_close_up;
+        let is_known = match technique {
+            Technique::Merge => view.is_close_up,
+            // It depends on how the two sides share a path.
+            Technique::Symmetric => false,
+            _ => true,
+        };
         Ok(Law {
             iterations,
             means,

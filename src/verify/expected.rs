@@ -178,8 +178,10 @@ impl Truths {
 pub const fn mollified(technique: Technique) -> Option<Mollified> {
     match technique {
         Technique::Camera => Some(Mollified::Camera),
+        Technique::Symmetric => Some(Mollified::Symmetric),
         Technique::Merge => Some(Mollified::Merge),
         Technique::NextEvent
+        | Technique::Bidirectional
         | Technique::LightTracing
         | Technique::ManifoldSampling
         | Technique::CameraEveryVertex => None,

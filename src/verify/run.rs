@@ -263,7 +263,7 @@ impl Job<'_> {
             demand,
         );
         let seconds = started.elapsed().as_secs_f64();
-        let mut command = command(request, self.argument, integrator.name(), checks);
+        let mut command = command(request, self.argument, integrator, checks);
         if self.variation.is_some() {
             command.push_str(" --variations");
         }
@@ -342,10 +342,11 @@ pub(crate) fn first_shape(
 }
 
 /// The command that gives the same verdicts on one pair: what the suite had as defaults is written out.
-fn command(request: &Request, scene: &str, integrator: &str, checks: u64) -> String {
+fn command(request: &Request, scene: &str, integrator: &dyn Integrator, checks: u64) -> String {
     let mut text = format!(
-        "nephroid verify --scene {} --integrator {integrator} --seed {} --effort {}",
+        "nephroid verify --scene {} --integrator {} --seed {} --effort {}",
         quoted(scene),
+        integrator.name(),
         request.seed,
         request.effort
     );
@@ -377,6 +378,7 @@ fn command(request: &Request, scene: &str, integrator: &str, checks: u64) -> Str
     if let Some(kernel) = request.kernel {
         text.push_str(&format!(" --kernel {kernel}"));
     }
+    text.push_str(&integrator.options());
     if let Some(mask) = &request.mask {
         text.push_str(&format!(" --mask {}", quoted(mask.file())));
     }

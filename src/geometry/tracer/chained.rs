@@ -26,6 +26,7 @@ impl<L: Light, S: Chains> Traced<L, S> {
             specular: classes.iter().any(PathClass::is_caustic),
             separates: !classes.contains(&PathClass::LDE),
             refracts: S::REFRACTS,
+            meets_itself: S::MEETS_ITSELF,
             seen_through: false,
             radiance_scale: 1.0,
             radiance_gain: scene.surface.radiance_gain(),
@@ -63,6 +64,10 @@ impl<L: Light, S: Chains> Tracer for Traced<L, S> {
 
     fn beams(&self) -> usize {
         self.scene.surface.classes().len()
+    }
+
+    fn aim(&self, beam: usize) -> Aim {
+        Aim::Chain(beam)
     }
 
     fn land(&self, beam: usize, rays: &Rays, landings: &mut Landings) {

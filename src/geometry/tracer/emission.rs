@@ -30,7 +30,25 @@ pub enum Emission {
     Beam(Beam),
 }
 
+/// What photons are equally likely over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// Directions from a point [sr].
+    SolidAngle(f64),
+    /// A cross-section of parallel light, perpendicular to it [m²].
+    CrossSection(f64),
+}
+
 impl Emission {
+    /// What photons are equally likely over.
+    pub fn extent(&self) -> Extent {
+        match self {
+            Emission::Cap(e) => Extent::SolidAngle(e.solid_angle()),
+            Emission::Cone(e) => Extent::SolidAngle(e.solid_angle()),
+            Emission::Beam(e) => Extent::CrossSection(e.cross_section()),
+        }
+    }
+
     /// Flux of all the light that is drawn from [W]: each of N photons stands for 1/N of it.
     pub fn flux(&self) -> f64 {
         match self {

@@ -11,9 +11,10 @@ mod chained;
 mod emission;
 mod once;
 
-pub use emission::{Aim, Emission};
+pub use emission::{Aim, Emission, Extent};
 
 use glam::DVec3;
+use multiversion::multiversion;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
@@ -25,7 +26,7 @@ use super::light::Light;
 use super::pinhole::Pinhole;
 use super::scene::{Overrides, Scene};
 use super::specular::Specular;
-use crate::stream::{BLOCK, Lanes, zeros};
+use crate::stream::{BLOCK, Dimension, Lanes, Stream, zeros};
 
 /// One vector for each path of a block.
 #[derive(Clone, Debug)]
@@ -194,6 +195,8 @@ pub struct Outline {
     pub separates: bool,
     /// Whether the interaction next to the light in a chain of unspecified kind, `S`, is a refraction.
     pub refracts: bool,
+    /// Whether a ray that leaves the surface on the side of the light can meet it again.
+    pub meets_itself: bool,
     /// Whether the floor can be seen through the surface.
     pub seen_through: bool,
     /// What radiance is multiplied by, apart from the weight, on its way from the floor through the surface to the camera.
@@ -217,6 +220,9 @@ pub trait Tracer: Send + Sync {
     /// chain belongs to one beam.
     fn beams(&self) -> usize;
 
+    /// What the photons of a beam cover.
+    fn aim(&self, beam: usize) -> Aim;
+
     /// Follows rays of light of a beam to the floor.
     fn land(&self, beam: usize, rays: &Rays, landings: &mut Landings);
 
@@ -238,28 +244,51 @@ pub trait Tracer: Send + Sync {
     fn seen(&self, x: &Lanes, y: &Lanes, free: &mut Lanes);
 }
 
+/// An entry, ready to be traced.
+pub enum Traceable {
+    /// A scene with a floor.
+    Floor(Box<dyn Tracer>),
+    /// A closed diffuse sphere.
+    Furnace(Furnace),
+}
+
 /// The tracer of an entry; `None` for a scene without a floor.
 pub fn tracer(entry: &Entry, overrides: Overrides) -> Option<Box<dyn Tracer>> {
+    match traceable(entry, overrides) {
+        Traceable::Floor(tracer) => Some(tracer),
+        Traceable::Furnace(_) => None,
+    }
+}
+
+/// Compiles an entry of any kind.
+pub fn traceable(entry: &Entry, overrides: Overrides) -> Traceable {
     struct Build;
     impl Visitor for Build {
-        type Output = Option<Box<dyn Tracer>>;
+        type Output = Traceable;
 
         fn scene<L: Light, S: Specular>(self, scene: Scene<L, S>) -> Self::Output {
-            Some(Box::new(once::Traced::new(scene)))
+            Traceable::Floor(Box::new(once::Traced::new(scene)))
         }
 
         fn chains<L: Light, S: Chains>(self, scene: Scene<L, S>) -> Self::Output {
-            Some(Box::new(chained::Traced::new(scene)))
+            Traceable::Floor(Box::new(chained::Traced::new(scene)))
         }
 
-        fn furnace(self, _: Furnace) -> Self::Output {
-            None
+        fn furnace(self, furnace: Furnace) -> Self::Output {
+            Traceable::Furnace(furnace)
         }
     }
     visit(entry, overrides, Build)
 }
 
+/// Two uniforms for each path of a block.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn uniforms(stream: &Stream, first: u64, dimension: Dimension, u: &mut Lanes, v: &mut Lanes) {
+    stream.pairs(first, dimension, u, v);
+}
+
 /// Rays through film positions, in pixels from the top left corner, with depth 1.
+#[multiversion(targets("x86_64+avx2"))]
 pub fn film_rays(camera: &Pinhole, column: &Lanes, row: &Lanes, rays: &mut Rays) {
     for i in 0..BLOCK {
         rays.origin.set(i, camera.position);

@@ -31,6 +31,7 @@ impl<L: Light, S: Specular> Traced<L, S> {
             specular: S::EXISTS,
             separates: S::SEPARATES,
             refracts: S::SEPARATES,
+            meets_itself: S::MEETS_ITSELF,
             seen_through: S::EXISTS,
             radiance_scale: scene.surface.radiance_scale(),
             radiance_gain: 1.0 / scene.surface.radiance_scale(),
@@ -72,6 +73,10 @@ impl<L: Light, S: Specular> Tracer for Traced<L, S> {
 
     fn beams(&self) -> usize {
         1
+    }
+
+    fn aim(&self, _: usize) -> Aim {
+        Aim::Scene
     }
 
     fn land(&self, _: usize, rays: &Rays, landings: &mut Landings) {

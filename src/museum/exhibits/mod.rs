@@ -1,6 +1,7 @@
 //! What the museum shows.
 
 mod camera;
+mod combinations;
 mod kernels;
 mod light;
 mod manifold;
@@ -128,6 +129,7 @@ pub fn all() -> impl Iterator<Item = &'static Exhibit> {
         .chain(kernels::EXHIBITS)
         .chain(numbers::EXHIBITS)
         .chain(manifold::EXHIBITS)
+        .chain(combinations::EXHIBITS)
 }
 
 /// Scenes of the museum alone: name and TOML.
