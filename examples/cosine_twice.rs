@@ -15,6 +15,7 @@ fn main() -> Result<(), nephroid::error::Error> {
     let settings = Settings {
         kernel: None,
         fault: Some(Fault::CosineTwice),
+        ..Settings::default()
     };
     let margin = Effort::Quick.margin();
     let request = Request {

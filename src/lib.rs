@@ -1,6 +1,7 @@
 //! nephroid: a test oracle for light transport that ordinary tests cannot judge.
 
 pub mod cli;
+pub mod connected_and_merged;
 pub mod diagnosis;
 pub mod entry;
 pub mod error;

@@ -58,6 +58,7 @@ fn integrator(name: &str, fault: Option<Fault>) -> Box<dyn Integrator> {
     let settings = Settings {
         kernel: None,
         fault,
+        ..Settings::default()
     };
     by_name(name, &settings).unwrap()
 }

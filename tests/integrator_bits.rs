@@ -49,6 +49,7 @@ fn films_have_the_golden_bits() {
                 let settings = Settings {
                     kernel,
                     fault: None,
+                    ..Settings::default()
                 };
                 let integrator = by_name(integrator.name(), &settings).unwrap();
                 let film = one_iteration(integrator.as_ref(), &entry, 20_000, 0.2);

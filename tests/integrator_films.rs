@@ -253,6 +253,7 @@ fn faults_do_what_they_say() {
             &Settings {
                 kernel: None,
                 fault,
+                ..Settings::default()
             },
         )
         .unwrap();
@@ -326,6 +327,7 @@ fn names_and_kernels_are_checked() {
             &Settings {
                 kernel: Some(kernel),
                 fault: None,
+                ..Settings::default()
             },
         )
     };

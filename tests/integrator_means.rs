@@ -351,6 +351,7 @@ fn the_regularized_classes_have_the_mean_of_technique_camera() {
         let settings = Settings {
             kernel: Some(kernel),
             fault: None,
+            ..Settings::default()
         };
         let found = replicate_means("pt-reg", &settings, &plain.entry, 2_000_000, alpha);
         check(&format!("pt-reg {kernel}"), &found, expected, CAUSTIC, 0.05);
@@ -367,6 +368,7 @@ fn merging_has_the_mean_of_the_convolved_caustic() {
         let settings = Settings {
             kernel,
             fault: None,
+            ..Settings::default()
         };
         let found = replicate_means(name, &settings, &plain.entry, 200_000, r);
         check(name, &found, expected, CAUSTIC, 0.04);

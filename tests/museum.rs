@@ -84,6 +84,7 @@ fn a_fault_changes_films_and_health_does_not() {
                 let settings = Settings {
                     kernel: None,
                     fault,
+                    ..Settings::default()
                 };
                 let integrator = by_name(stand.integrator, &settings).unwrap();
                 film(&entry, integrator.prepare(&entry).as_ref(), stand.bandwidth)

@@ -132,5 +132,8 @@ fn technique(treatment: Treatment) -> Option<&'static str> {
         Technique::LightTracing => "light_tracing",
         Technique::Camera => "camera",
         Technique::Merge => "merge",
+        Technique::AdaptiveMerge => "adaptive_merge",
+        Technique::Connection => "connection",
+        Technique::ConnectionAndMerging => "connection_and_merging",
     })
 }

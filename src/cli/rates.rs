@@ -58,6 +58,7 @@ impl Options {
         let settings = Settings {
             kernel: self.kernel,
             fault: None,
+            ..Settings::default()
         };
         let integrator = by_name(&self.integrator, &settings)?;
         supported(&entry, integrator.as_ref())?;

@@ -9,8 +9,9 @@ use crate::error::Error;
 use crate::exr_output::{metadata, write_exr};
 use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
+use crate::integrators::selection::{PILOTS, Selection, Selector, accumulate_selected};
 use crate::integrators::{
-    Integrator, Kernel, Plan, Schedule, Settings, Technique, Treatment, by_name,
+    Integrator, Kernel, Merging, Plan, Schedule, Settings, Statistics, Technique, Treatment, by_name,
 };
 use crate::{entry, exit};
 
@@ -25,7 +26,7 @@ const DEFAULT_BANDWIDTH: f64 = 0.2;
 pub struct Args {
     /// A name from `nephroid list`, or a TOML file.
     scene: String,
-    /// pt, pt-reg, lt, pm or ppm.
+    /// pt, pt-reg, lt, pm, ppm, appm or vcm.
     #[arg(long, value_name = "NAME")]
     integrator: String,
     /// Paths over the whole image, such as 3e7. A path of pm and ppm is one photon and one camera path.
@@ -35,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "K", default_value_t = 1)]
     seed: u64,
     /// Bandwidth of the regularized classes: an angle in radians for pt-reg, a radius in metres for pm; the first radius
-    /// for ppm. Default: 0.2.
+    /// for ppm, and the largest for appm. Default: 0.2.
     #[arg(long, value_name = "A", conflicts_with = "schedule")]
     bandwidth: Option<f64>,
     /// Bandwidth per iteration: a number, a list `0.3,0.2,0.1` whose last value stays, or `ppm(R1,A)`:
@@ -49,6 +50,16 @@ pub struct Args {
     /// biweight or cone on the radius (pm, ppm, appm, vcm).
     #[arg(long, value_name = "KERNEL")]
     kernel: Option<Kernel>,
+    /// How the radii of ppm shrink: by a sequence, or pixel by pixel with the photons met.
+    #[arg(long, value_name = "S", default_value_t)]
+    statistics: Statistics,
+    /// What vcm merges: full (every class), selective (only what no connection samples) or none.
+    #[arg(long, value_name = "M", default_value_t)]
+    merging: Merging,
+    /// Choose the bandwidth of an iteration from those before it: preview (the smallest at which all paths of a pixel miss with
+    /// probability 1e-3 at most) or optimum (of least estimated error). The given bandwidth is the largest.
+    #[arg(long, value_name = "WAY", conflicts_with = "schedule")]
+    select: Option<Select>,
     /// The EXR file to write.
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
@@ -59,7 +70,10 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     let entry = entry::load(&args.scene)?;
     let settings = Settings {
         kernel: args.kernel,
+        statistics: args.statistics,
+        merging: args.merging,
         fault: None,
+        ..Settings::default()
     };
     let integrator = by_name(&args.integrator, &settings)?;
     integrator.supports(&entry).map_err(|reason| {
@@ -103,17 +117,38 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         return Ok(exit::NOTHING_RAN);
     }
 
-    let bar = progress(args.paths);
-    accumulate(
-        integrator.prepare(&entry).as_ref(),
-        &schedule,
-        args.seed,
-        args.paths,
-        per_iteration,
-        &mut film,
-        |paths| bar.set_position(paths),
-    );
-    bar.finish_and_clear();
+    let prepared = integrator.prepare(&entry);
+    let schedule = match args.select {
+        Some(way) => {
+            let mut selector = selector(args, way, integrator.as_ref(), &plan, film.pixels())?;
+            let fewest = u64::from(PILOTS) + 1;
+            let per_iteration = per_iteration.min(args.paths.div_ceil(fewest));
+            let (seed, paths) = (args.seed, args.paths);
+            let prepared = prepared.as_ref();
+            Schedule::List(accumulate_selected(
+                prepared,
+                &mut selector,
+                seed,
+                paths,
+                per_iteration,
+                &mut film,
+            ))
+        }
+        None => {
+            let bar = progress(args.paths);
+            accumulate(
+                prepared.as_ref(),
+                &schedule,
+                args.seed,
+                args.paths,
+                per_iteration,
+                &mut film,
+                |paths| bar.set_position(paths),
+            );
+            bar.finish_and_clear();
+            schedule
+        }
+    };
     write(
         args,
         &entry,
@@ -124,6 +159,55 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         per_iteration,
     )?;
     Ok(exit::PASS)
+}
+
+/// How a bandwidth is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Select {
+    Preview,
+    Optimum,
+}
+
+/// Probability that a preview misses a pixel.
+const MISS: f64 = 1e-3;
+
+/// What chooses the bandwidths, where it has something to choose.
+fn selector(
+    args: &Args,
+    way: Select,
+    integrator: &dyn Integrator,
+    plan: &Plan,
+    pixels: usize,
+) -> Result<Selector, Error> {
+    let regularized = |t: Treatment| match t {
+        Treatment::Regularized(technique) => Some(technique),
+        _ => None,
+    };
+    let layers: Vec<usize> = (0..plan.len())
+        .filter(|&k| regularized(plan[k].treatment).is_some())
+        .collect();
+    let techniques = || plan.iter().filter_map(|c| regularized(c.treatment));
+    let name = integrator.name();
+    if layers.is_empty() || techniques().any(|t| t == Technique::AdaptiveMerge) {
+        let allowed = "nothing where no bandwidth is to be chosen";
+        return Err(refused("select", name, allowed));
+    }
+    let selection = match way {
+        Select::Optimum => Selection::Optimum,
+        Select::Preview if techniques().all(|t| t == Technique::Camera) => {
+            Selection::Preview { miss: MISS }
+        }
+        Select::Preview => {
+            let allowed = "preview for methods that connect: a camera path meets many photons at a time";
+            return Err(refused("select", name, allowed));
+        }
+    };
+    let given = args.bandwidth.unwrap_or(DEFAULT_BANDWIDTH);
+    // A mollified interaction on a surface in space has two dimensions.
+    let dimension = 2.0;
+    Ok(Selector::new(
+        selection, given, dimension, args.paths, pixels, layers,
+    ))
 }
 
 /// Writes the image of the classes that are sampled, and prints their means.

@@ -136,6 +136,18 @@ pub enum Fault {
     IterationsShareNumbers,
     /// Landing points of light paths rounded to single precision, in a scene 1e6 m away from the origin.
     SinglePrecision,
+    /// The radius of a pass is chosen with a look at the photons of that pass.
+    RadiusFromCurrentPhotons,
+    /// The recursion of r² applied to r.
+    RecursionOnRadius,
+    /// The radius in place of its square in the weights of merges, not in those of connections.
+    MergingWeightByRadius,
+    /// Paths that are connected and merged count fully in both.
+    ConnectedAndMerged,
+    /// Merges have the weight of the connections.
+    BidirectionalWeightOnMerges,
+    /// Merges are divided by the paths of the iteration, not by the photons of their map.
+    MergesPerPath,
     /// The paths of one class are lost.
     ClassDropped(PathClass),
 }

@@ -5,18 +5,24 @@
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
 pub mod accumulate;
+mod adaptive_radius;
+pub mod appm;
 mod camera_paths;
 mod chains;
 mod connection;
 mod defect;
 mod deviation;
+mod eye_block;
 mod fault;
 mod furnace;
 pub mod kernel;
+pub mod learning;
 mod lt;
 mod merged_chains;
 mod photon_grid;
 mod photon_mapping;
+mod photon_maps;
+pub mod pixel_statistics;
 mod plan;
 mod pm;
 mod ppm;
@@ -25,17 +31,23 @@ mod pt;
 mod pt_reg;
 mod regularized_chains;
 pub mod schedule;
+pub mod selection;
 mod settings;
+pub mod vcm;
 
+pub use appm::Appm;
 pub use fault::Fault;
 pub use kernel::Kernel;
+pub use learning::{Learner, Run};
 pub use lt::Lt;
+pub use pixel_statistics::Statistics;
 pub use pm::Pm;
 pub use ppm::Ppm;
 pub use pt::Pt;
 pub use pt_reg::PtReg;
 pub use schedule::Schedule;
 pub use settings::Settings;
+pub use vcm::{Merging, Vcm};
 
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
@@ -77,6 +89,12 @@ pub enum Technique {
     Camera,
     /// Merging with photons within a radius.
     Merge,
+    /// Merging within a radius that depends on the photons of earlier iterations: its expectation is known only given the radii.
+    AdaptiveMerge,
+    /// Next event estimation and light tracing, those of them that can build the path, combined.
+    Connection,
+    /// The same, and merging.
+    ConnectionAndMerging,
 }
 
 /// Per class, in the order of the film's layers.
@@ -125,6 +143,12 @@ pub trait Prepared: Send + Sync {
     /// Adds the contributions of `paths` paths to the film. The same (seed, iteration, paths, bandwidth) gives the same
     /// bits. `bandwidth` is an angle [rad] or a radius [m], ignored by methods that regularize nothing.
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film);
+
+    /// A run whose iterations learn from those before them; `None` for methods of which each iteration stands alone.
+    /// See [`Run`].
+    fn learner(&self) -> Option<Box<dyn Learner + '_>> {
+        None
+    }
 }
 
 /// Whether the regularizing methods know the kind of the scene: those with a floor.
@@ -156,7 +180,7 @@ pub fn all() -> Vec<Box<dyn Integrator>> {
 }
 
 /// The names of the methods, in the order in which they are listed.
-pub const NAMES: [&str; 5] = ["pt", "pt-reg", "lt", "pm", "ppm"];
+pub const NAMES: [&str; 7] = ["pt", "pt-reg", "lt", "pm", "ppm", "appm", "vcm"];
 
 /// The names of kernels on a distance, for messages.
 const PLANAR: &str = "disc, epanechnikov, biweight, cone";
@@ -188,7 +212,18 @@ pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, E
         }
         "ppm" => {
             takes(Kernel::is_planar, PLANAR)?;
+            if settings.statistics == Statistics::Pixel {
+                takes(|k| k == Kernel::Disc, "disc (with statistics of pixels)")?;
+            }
             Box::new(Ppm::new(settings))
+        }
+        "appm" => {
+            takes(Kernel::is_planar, PLANAR)?;
+            Box::new(Appm::new(settings))
+        }
+        "vcm" => {
+            takes(Kernel::is_planar, PLANAR)?;
+            Box::new(Vcm::new(settings))
         }
         _ => {
             return Err(Error::UnknownName {

@@ -62,6 +62,17 @@ pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
     })
 }
 
+/// The plan of a method that merges at radii of its own choice.
+pub(super) fn adaptive_plan(entry: &Entry, how: &str) -> Plan {
+    plan_of(entry, |class| {
+        next_event_plan(class).unwrap_or_else(|| ClassPlan {
+            class,
+            treatment: Treatment::Regularized(Technique::AdaptiveMerge),
+            reason: format!("irregular: light and specular vertex are both singular; {how}"),
+        })
+    })
+}
+
 pub(super) fn prepare(entry: &Entry, settings: &Settings) -> Box<dyn Prepared> {
     let overrides = Defect::new(settings.fault).overrides();
     let settings = *settings;

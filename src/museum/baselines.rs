@@ -111,6 +111,7 @@ pub fn of(set_up: &SetUp, fault: Option<Fault>, seed: u64, paths: u64) -> Result
         let settings = Settings {
             kernel: None,
             fault,
+            ..Settings::default()
         };
         let integrator = by_name(stand.integrator, &settings)?;
         let prepared = integrator.prepare(entry);

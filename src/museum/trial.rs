@@ -120,6 +120,7 @@ impl Hall {
         let settings = Settings {
             kernel: None::<Kernel>,
             fault,
+            ..Settings::default()
         };
         let SetUp { stand, entry, .. } = set_up;
         let integrator = by_name(stand.integrator, &settings)?;

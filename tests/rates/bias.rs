@@ -71,6 +71,7 @@ fn the_order_of_the_bias_of_regularized_path_tracing() {
     let settings = Settings {
         kernel: None,
         fault: Some(Fault::RadiusForRadiusSquared),
+        ..Settings::default()
     };
     let heavy = by_name("pt-reg", &settings).unwrap();
     assert_eq!(
@@ -137,6 +138,7 @@ fn too_few_contributions_decide_nothing() {
     let settings = Settings {
         kernel: None,
         fault: Some(Fault::ClassDropped(PathClass::LSDE)),
+        ..Settings::default()
     };
     let dropped = by_name("pt-reg", &settings).unwrap();
     let study = bias_study(dropped.as_ref(), None, 4_000_000);
