@@ -1,7 +1,8 @@
 //! The radius of a pixel from the photons that it has met: a plug-in of estimated bias and variance.
 //!
 //! The mean of merging n photons has, at radius r, the bias C_B r² with C_B = β ΔE (β of the kernel, Δ the Laplacian
-//! on the floor) and the variance C_V/(n r²) with C_V = Φ E ρ (ρ the kernel's roughness). A running mean over passes with
+//! on the floor) and the variance C_V/(n r²) with C_V = ρ Φ² e₂ (ρ the kernel's roughness, e₂ the density of photons on the floor, each times the square of
+//! its weight). A running mean over passes with
 //! r_k ~ k^(-1/6) has the least error if, with n photons up to and with pass k,
 //!
 //! ```text
@@ -9,10 +10,10 @@
 //! ```
 //!
 //! [Kaplanyan & Dachsbacher 2013, adaptive progressive photon mapping, for the plug-in; the 6 is derived here: bias 3/2 C_B r₁² k^(-1/3), variance
-//! 3/4 C_V/(S r₁²) k^(-2/3) after k passes of S photons, minimised over r₁]. E and ΔE are estimated with a radius R > r,
+//! 3/4 C_V/(S r₁²) k^(-2/3) after k passes of S photons, minimised over r₁]. e₂ and ΔE are estimated with a radius R > r,
 //!
 //! ```text
-//! E ≈ Φ/S Σ 2/(πR²) (1 - s)             ΔE ≈ Φ/S Σ 48/(πR⁴) (1 - s)(3s - 1)        s = d²/R²
+//! e₂ ≈ 1/S Σ w² 2/(πR²) (1 - s)             ΔE ≈ Φ/S Σ w 48/(πR⁴) (1 - s)(3s - 1)        s = d²/R²
 //! ```
 //!
 //! the second being the Laplacian of the kernel 4/(πR²) (1 - s)³ [derived here]. R shrinks like n^(-1/10), the rate for second derivatives. The
@@ -32,16 +33,16 @@ pub(super) struct Seen {
     /// Maps, and photons in them.
     maps: f64,
     photons: f64,
-    /// Sums over maps of the estimates of E/Φ, ΔE/Φ and the square of the latter.
-    irradiance: f64,
+    /// Sums over maps of the estimates of e₂, ΔE/Φ and the square of the latter.
+    density: f64,
     laplacian: f64,
     square: f64,
 }
 
-/// Estimates from one map: of E/Φ and ΔE/Φ.
+/// Estimates from one map: of e₂ and ΔE/Φ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Estimates {
-    irradiance: f64,
+    density: f64,
     laplacian: f64,
 }
 
@@ -49,15 +50,15 @@ impl Estimates {
     /// At a point, from a map of so many photons within the radius R.
     pub(super) fn at(grid: &PhotonGrid, [x, y]: [f64; 2], wide: f64, photons: f64) -> Self {
         let inverse = 1.0 / (wide * wide);
-        let parabola = |d2: f64, flux: f64| flux * (1.0 - d2 * inverse);
-        let laplacian = |d2: f64, flux: f64| {
+        let parabola = |d2: f64, weight: f64| weight * weight * (1.0 - d2 * inverse);
+        let laplacian = |d2: f64, weight: f64| {
             let s = d2 * inverse;
-            flux * ((1.0 - s) * (3.0 * s - 1.0))
+            weight * ((1.0 - s) * (3.0 * s - 1.0))
         };
         let e = grid.sum(x, y, wide, [1, 1], parabola);
         let l = grid.sum(x, y, wide, [1, 1], laplacian);
         Estimates {
-            irradiance: 2.0 / PI * inverse * e / photons,
+            density: 2.0 / PI * inverse * e / photons,
             laplacian: 48.0 / PI * inverse * inverse * l / photons,
         }
     }
@@ -68,7 +69,7 @@ impl Seen {
     pub(super) fn learn(&mut self, e: Estimates, photons: f64) {
         self.maps += 1.0;
         self.photons += photons;
-        self.irradiance += e.irradiance;
+        self.density += e.density;
         self.laplacian += e.laplacian;
         self.square += e.laplacian * e.laplacian;
     }
@@ -85,11 +86,11 @@ impl Seen {
             return wide;
         }
         let m = self.maps;
-        let (e, l) = (self.irradiance / m, self.laplacian / m);
+        let (e, l) = (self.density / m, self.laplacian / m);
         let variance = (self.square / m - l * l) / (m - 1.0);
         let variance = if variance > 0.0 { variance } else { 0.0 };
         let beta = kernel.bias_coefficient();
-        // With E = Φ e and ΔE = Φ l, Φ² is in both C_V and C_B².
+        // Φ² is in both C_V and C_B².
         let ratio = kernel.roughness() * e / (6.0 * beta * beta * (l * l + variance));
         let n = self.photons + photons;
         let r = pow(ratio / n, 1.0 / 6.0);
@@ -103,7 +104,7 @@ mod tests {
     use super::*;
     use crate::integrators::photon_grid::Photons;
 
-    /// Photons on a fine lattice with the density 1 + x²: E/Φ and ΔE/Φ are 1 + x² and 2 there.
+    /// Photons on a fine lattice, of the weight 1 + x²: e₂ is its square's mean, ΔE/Φ is 2.
     #[test]
     fn irradiance_and_laplacian_of_a_parabola() {
         let mut photons = Photons::default();
@@ -119,15 +120,18 @@ mod tests {
         // As many photons per square metre as there are in all, so that a flux of 1 has the density 1.
         let per_area = f64::from(n * n) / 4.0;
         let e = Estimates::at(&grid, [0.1, -0.2], wide, per_area);
-        // The parabola's second moment along an axis is R²/6; a Laplacian without fourth derivatives has no bias.
-        assert!((e.irradiance - (1.01 + wide * wide / 6.0)).abs() < 1e-3);
+        // (1 + x²)² = 1 + 2x² + x⁴ at x = 0.1 + δ, <δ²> = R²/6, <δ⁴> = 3/4 · R⁴/12 of the parabola; a Laplacian without fourth
+        // derivatives has no bias.
+        let (two, four) = (wide * wide / 6.0, wide * wide * wide * wide / 16.0);
+        let expected = 1.01 * 1.01 + (2.0 + 6.0 * 0.01) * two + four;
+        assert!((e.density - expected).abs() < 1e-3, "{e:?} {expected}");
         assert!((e.laplacian - 2.0).abs() < 1e-2, "{e:?}");
     }
 
     #[test]
     fn the_radius_is_the_formula_and_noise_makes_it_smaller() {
         let e = |laplacian| Estimates {
-            irradiance: 0.03,
+            density: 0.03,
             laplacian,
         };
         let (mut calm, mut noisy) = (Seen::default(), Seen::default());
@@ -148,7 +152,7 @@ mod tests {
         let mut dark = Seen::default();
         for _ in 0..10 {
             let none = Estimates {
-                irradiance: 0.0,
+                density: 0.0,
                 laplacian: 0.0,
             };
             dark.learn(none, 100.0);

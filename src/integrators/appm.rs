@@ -39,6 +39,14 @@ impl Appm {
     }
 }
 
+/// Flux [W] of all the light that the photons of the first chain that is merged are drawn from: 4π I, or a beam's cross-section times
+/// its irradiance. `None` without such a chain.
+pub fn photon_flux(entry: &Entry) -> Option<f64> {
+    let traced = Traced::new(entry, Defect::new(None))?;
+    let sources = Source::of_caustics(&traced);
+    sources.first().map(Source::flux)
+}
+
 impl Integrator for Appm {
     fn name(&self) -> &'static str {
         "appm"

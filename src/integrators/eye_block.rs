@@ -149,7 +149,8 @@ impl EyeBlock {
             let Some(layer) = layers[direct][eye] else {
                 continue;
             };
-            let irradiance = self.irradiance[i] * self.cosine[i];
+            let irradiance =
+                self.irradiance[i] * self.cosine[i] * defect.beside_own_cosine(self.cosine[i]);
             let value = self.weight[i] * scale[eye] * irradiance;
             if value > 0.0 {
                 let value = value * share(i);

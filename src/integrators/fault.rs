@@ -146,8 +146,8 @@ pub enum Fault {
     ConnectedAndMerged,
     /// Merges have the weight of the connections.
     BidirectionalWeightOnMerges,
-    /// Merges are divided by the paths of the iteration, not by the photons of their map.
-    MergesPerPath,
+    /// Merges are divided by the count that is in the weights, not by the photons of their map.
+    MergesByNominalCount,
     /// The paths of one class are lost.
     ClassDropped(PathClass),
 }

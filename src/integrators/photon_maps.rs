@@ -84,7 +84,9 @@ impl PhotonMaps {
                 let l = &self.landings;
                 for i in 0..live {
                     if (l.weight[i] > 0.0) & (l.chain[i] == wanted) {
-                        map.photons.push(l.x[i], l.y[i], l.weight[i]);
+                        let deviations =
+                            defect.beside_cosine(l.cosine[i]) * defect.roulette(self.u[i]);
+                        map.photons.push(l.x[i], l.y[i], l.weight[i] * deviations);
                     }
                 }
             }

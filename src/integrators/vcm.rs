@@ -279,7 +279,7 @@ impl Prepared for PreparedVcm {
             }
             let photons = match self.settings.fault {
                 // The other count at hand.
-                Some(Fault::MergesPerPath) => paths,
+                Some(Fault::MergesByNominalCount) => MAP,
                 _ => end - start,
             };
             for (first, live) in blocks(start, end) {
@@ -345,7 +345,10 @@ impl PreparedVcm {
             }
             for i in (0..live).filter(|&i| landings.weight[i] > 0.0) {
                 let chain = landings.chain[i] as usize;
-                let (x, y, weight) = (landings.x[i], landings.y[i], landings.weight[i]);
+                let (x, y) = (landings.x[i], landings.y[i]);
+                let deviations =
+                    self.defect.beside_cosine(landings.cosine[i]) * self.defect.roulette(u[i]);
+                let weight = landings.weight[i] * deviations;
                 let merges = |c: &Option<PathClass>| {
                     c.is_some_and(|c| self.settings.merging.merges(c))
                 };

@@ -46,7 +46,8 @@ fn full_merging_has_the_weighted_expectation() {
 
 #[test]
 fn selective_merging_changes_no_bit_of_what_connections_sample() {
-    let scene = entry::load("mirror-wall").unwrap();
+    let mut scene = entry::load("mirror-wall").unwrap();
+    (scene.camera.width, scene.camera.height) = (40, 30);
     let film = |merging: Merging, r: f64| {
         let settings = Settings {
             merging,
@@ -114,13 +115,13 @@ fn faults_of_the_weights_are_noticed() {
         Fault::MergingWeightByRadius,
         Fault::ConnectedAndMerged,
         Fault::BidirectionalWeightOnMerges,
-        Fault::MergesPerPath,
+        Fault::MergesByNominalCount,
     ] {
         let settings = Settings {
             fault: Some(fault),
             ..Settings::default()
         };
-        let found = class_means("vcm", &settings, &scene, 1, 1 << 15, r);
+        let found = class_means("vcm", &settings, &scene, 1, 20_000, r);
         let worst = expected
             .iter()
             .map(|(class, areas)| of(&found, *class).t(areas[0].value).abs())
