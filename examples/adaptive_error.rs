@@ -9,7 +9,7 @@
 use nephroid::entry;
 use nephroid::film::Film;
 use nephroid::integrators::appm::{Appm, photon_flux};
-use nephroid::integrators::{Integrator as _, Learner as _, Settings, by_name};
+use nephroid::integrators::{Learner as _, Settings, by_name};
 use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};
 use nephroid_analytic::bandwidth::optimum::{Study, fixed};
 use nephroid_analytic::bandwidth::{Convention, Kernel, Technique};

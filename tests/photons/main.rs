@@ -15,17 +15,21 @@ use nephroid::integrators::{Run, Settings, by_name};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+/// m.
 pub const REPLICATES: u64 = 32;
+/// z.
 pub const STANDARD_ERRORS: f64 = 6.2;
 
 /// Independent figures.
 pub struct Replicates(pub Vec<f64>);
 
 impl Replicates {
+    /// Their mean.
     pub fn mean(&self) -> f64 {
         self.0.iter().sum::<f64>() / self.0.len() as f64
     }
 
+    /// Its standard error.
     pub fn standard_error(&self) -> f64 {
         let (m, mean) = (self.0.len() as f64, self.mean());
         let squares = self.0.iter().map(|x| (x - mean) * (x - mean));
