@@ -50,7 +50,11 @@ fn beam_area(entry: &Entry) -> f64 {
 }
 
 fn mean_squared_error(estimates: &[f64], truth: f64) -> f64 {
-    estimates.iter().map(|e| (e - truth) * (e - truth)).sum::<f64>() / estimates.len() as f64
+    estimates
+        .iter()
+        .map(|e| (e - truth) * (e - truth))
+        .sum::<f64>()
+        / estimates.len() as f64
 }
 
 fn main() {
@@ -68,7 +72,13 @@ fn main() {
         };
         let area = beam_area(&whole);
         let scene = close_up(&whole, x, height);
-        let study = Study::new(&scene, Technique::Merge, Kernel::Disc, Convention::Exact, area);
+        let study = Study::new(
+            &scene,
+            Technique::Merge,
+            Kernel::Disc,
+            Convention::Exact,
+            area,
+        );
         let Some((study, place)) = study.ok().and_then(|s| {
             let place = s.classes().iter().position(|c| *c == PathClass::LSDE)?;
             Some((s, place))
@@ -86,7 +96,11 @@ fn main() {
             .map(|t| t.at(x[0], x[1]))
             .and_then(|t| t.iter().find(|t| t.class == PathClass::LSDE).copied())
             .map_or(f64::NAN, |t| t.irradiance.value);
-        let layer = scene.kind.classes().iter().position(|c| *c == PathClass::LSDE);
+        let layer = scene
+            .kind
+            .classes()
+            .iter()
+            .position(|c| *c == PathClass::LSDE);
         let layer = layer.unwrap_or(0);
         let film = || Film::new(1, 1, scene.kind.classes());
         let value = |film: &Film| per_radiance * film.layers[layer][0] / film.paths as f64;

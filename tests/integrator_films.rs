@@ -5,7 +5,9 @@ mod iteration;
 use core::f64::consts::PI;
 
 use nephroid::entry;
-use nephroid::integrators::{Fault, Kernel, NAMES, Schedule, Settings, Technique, Treatment, all, by_name};
+use nephroid::integrators::{
+    Fault, Kernel, NAMES, Schedule, Settings, Technique, Treatment, all, by_name,
+};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{CylinderCupScene, DiffuseScene, Entry, Kind};
 

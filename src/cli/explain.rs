@@ -112,7 +112,9 @@ fn with_wrapped(left: &str, sentence: &str) -> String {
 
 /// Whether the method has no edge to sample or connect without touching a singularity.
 fn is_irregular(treatment: Treatment) -> bool {
-    !matches!(treatment, Treatment::Exact(_))
+    // What is connected and merged has connections that touch none.
+    let connected = Treatment::Regularized(Technique::ConnectionAndMerging);
+    !matches!(treatment, Treatment::Exact(_)) && treatment != connected
 }
 
 fn treatment(treatment: Treatment) -> &'static str {

@@ -11,7 +11,8 @@ use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
 use crate::integrators::selection::{PILOTS, Selection, Selector, accumulate_selected};
 use crate::integrators::{
-    Integrator, Kernel, Merging, Plan, Schedule, Settings, Statistics, Technique, Treatment, by_name,
+    Integrator, Kernel, Merging, Plan, Schedule, Settings, Statistics, Technique, Treatment,
+    by_name,
 };
 use crate::{entry, exit};
 
@@ -198,7 +199,8 @@ fn selector(
             Selection::Preview { miss: MISS }
         }
         Select::Preview => {
-            let allowed = "preview for methods that connect: a camera path meets many photons at a time";
+            let allowed =
+                "preview for methods that connect: a camera path meets many photons at a time";
             return Err(refused("select", name, allowed));
         }
     };

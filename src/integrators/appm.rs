@@ -236,8 +236,7 @@ impl State {
                 self.eye.draw(traced, defect, &stream, first, live);
                 self.eye.light(traced);
                 let layers = traced.layers(film);
-                self.eye
-                    .next_event(traced, defect, &layers, |_| 1.0, film);
+                self.eye.next_event(traced, defect, &layers, |_| 1.0, film);
                 self.merge(prepared, kernel_of(settings), first_radius, photons, film);
             }
         }

@@ -111,8 +111,10 @@ impl EyeBlock {
             let (column, row, kept) = defect.placed(camera, self.column[i], self.row[i]);
             self.column[i] = column;
             self.row[i] = row;
-            self.weight[i] =
-                self.landings.weight[i] * scale * kept * defect.at_sensor(self.rays.direction.get(i));
+            self.weight[i] = self.landings.weight[i]
+                * scale
+                * kept
+                * defect.at_sensor(self.rays.direction.get(i));
         }
         self.weight[live..].fill(0.0);
     }

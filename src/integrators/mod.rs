@@ -72,7 +72,7 @@ pub enum Treatment {
     /// Sampled without bias: judged against the closed form.
     Exact(Technique),
     /// Every edge touches a singularity: sampled with a mollified delta at the bandwidth, judged against the exact
-    /// expectation at that bandwidth.
+    /// expectation at that bandwidth. So is a class that [`Technique::ConnectionAndMerging`] merges without need.
     Regularized(Technique),
     /// The method cannot build such a path.
     NotSampled,

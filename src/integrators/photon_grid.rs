@@ -261,11 +261,7 @@ mod tests {
                                 Kernel::Biweight => parabola * parabola,
                                 _ => 1.0 - d2.sqrt() / radius,
                             };
-                            if inside {
-                                photons.flux[j] * shape
-                            } else {
-                                0.0
-                            }
+                            if inside { photons.flux[j] * shape } else { 0.0 }
                         })
                         .sum();
                     let found = grid.gather(x, y, &kernel, [1, 1]);

@@ -19,6 +19,7 @@ use core::str::FromStr;
 use libm::sqrt;
 use nephroid_analytic::scene::Entry;
 
+use super::Prepared;
 use super::defect::Defect;
 use super::deviation::Deviation;
 use super::eye_block::{EyeBlock, Traced};
@@ -27,7 +28,6 @@ use super::photon_mapping::{blocks, map_size};
 use super::photon_maps::{PhotonMaps, Source};
 use super::schedule::DEFAULT_REDUCTION;
 use super::settings::Settings;
-use super::Prepared;
 use crate::film::Film;
 use crate::stream::Stream;
 
@@ -145,8 +145,7 @@ impl PixelProgressive {
 impl Prepared for PixelProgressive {
     /// An iteration of which nothing is known before.
     fn iterate(&self, seed: u64, iteration: u32, paths: u64, bandwidth: f64, film: &mut Film) {
-        self.run()
-            .iterate(seed, iteration, paths, bandwidth, film);
+        self.run().iterate(seed, iteration, paths, bandwidth, film);
     }
 
     fn learner(&self) -> Option<Box<dyn Learner + '_>> {
@@ -215,8 +214,7 @@ impl Learner for PixelRun<'_> {
             for (first, live) in blocks(start, end) {
                 self.eye.draw(traced, defect, &stream, first, live);
                 self.eye.light(traced);
-                self.eye
-                    .next_event(traced, defect, &layers, |_| 1.0, film);
+                self.eye.next_event(traced, defect, &layers, |_| 1.0, film);
                 let eye = &self.eye;
                 for i in 0..live {
                     let (column, row) = (eye.column[i] as usize, eye.row[i] as usize);

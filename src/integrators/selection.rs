@@ -106,9 +106,10 @@ impl Selector {
             Selection::Fixed => None,
             Selection::Preview { miss } => {
                 let hits: f64 = self.passes.iter().map(|p| p.hits as f64).sum();
-                let weights = self.passes.iter().map(|p| {
-                    p.paths as f64 * pow(p.bandwidth / self.given, self.dimension)
-                });
+                let weights = self
+                    .passes
+                    .iter()
+                    .map(|p| p.paths as f64 * pow(p.bandwidth / self.given, self.dimension));
                 let rate = hits / weights.sum::<f64>();
                 let paths = self.budget / self.pixels;
                 preview_bandwidth(rate, self.given, paths, miss, self.dimension)

@@ -298,9 +298,7 @@ impl PreparedVcm {
     /// η of a class.
     fn eta(&self, class: Option<PathClass>, radius: f64) -> f64 {
         match class {
-            Some(class) if self.settings.merging.merges(class) => {
-                PI * radius * radius * MAP as f64
-            }
+            Some(class) if self.settings.merging.merges(class) => PI * radius * radius * MAP as f64,
             _ => 0.0,
         }
     }
@@ -349,9 +347,8 @@ impl PreparedVcm {
                 let deviations =
                     self.defect.beside_cosine(landings.cosine[i]) * self.defect.roulette(u[i]);
                 let weight = landings.weight[i] * deviations;
-                let merges = |c: &Option<PathClass>| {
-                    c.is_some_and(|c| self.settings.merging.merges(c))
-                };
+                let merges =
+                    |c: &Option<PathClass>| c.is_some_and(|c| self.settings.merging.merges(c));
                 if classes[chain].iter().any(merges) {
                     photons[chain].push(x, y, weight);
                 }
@@ -439,7 +436,11 @@ impl PreparedVcm {
                 }
                 let mut d = densities(chain, i);
                 if self.settings.fault == Some(Fault::MergingWeightByRadius) {
-                    d.merging *= if is_connected(class) { kernel.radius } else { 1.0 };
+                    d.merging *= if is_connected(class) {
+                        kernel.radius
+                    } else {
+                        1.0
+                    };
                 }
                 let share = match self.settings.fault {
                     Some(Fault::ConnectedAndMerged) => 1.0,

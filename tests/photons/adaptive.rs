@@ -17,7 +17,12 @@ use crate::{REPLICATES, Replicates, STANDARD_ERRORS, close_up};
 const PASSES: u32 = 24;
 
 /// Per replicate the sum over passes of X_k and of E[X | r_k], and all radii.
-fn sums(scene: &Entry, x: [f64; 2], first: f64, fault: Option<Fault>) -> (Replicates, f64, Vec<f64>) {
+fn sums(
+    scene: &Entry,
+    x: [f64; 2],
+    first: f64,
+    fault: Option<Fault>,
+) -> (Replicates, f64, Vec<f64>) {
     let exact = |r: f64| {
         let estimator = Estimator {
             technique: Technique::Merge,

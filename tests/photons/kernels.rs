@@ -64,9 +64,7 @@ fn means_of_the_image() {
         };
         let found = class_means("pm", &settings, &scene, 1, 60_000, 0.4);
         let merge = Technique::Merge;
-        for (class, m) in
-            expectation::class_means(&scene, merge, *kernel, &[0.4], 1e-4).unwrap()
-        {
+        for (class, m) in expectation::class_means(&scene, merge, *kernel, &[0.4], 1e-4).unwrap() {
             let what = format!("pm {shape} {class}");
             of(&found, class).check(&what, m.mean.value, m.mean.error, 0.06);
         }

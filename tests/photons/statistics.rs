@@ -58,7 +58,12 @@ fn without_reduction_it_is_photon_mapping() {
     let scene = scene();
     let (found, ratio) = estimates(&scene, 1.0, 8);
     assert_eq!(ratio, 1.0);
-    found.check("pixel statistics, a = 1", expected(&scene, &[RADIUS]), 0.0, 0.1);
+    found.check(
+        "pixel statistics, a = 1",
+        expected(&scene, &[RADIUS]),
+        0.0,
+        0.1,
+    );
 }
 
 /// r²ₙ = r₁² Γ(n + a)/(Γ(a) n!) where photons are uniform; here they nearly are, and a pass meets a hundred times its camera paths. The
