@@ -163,11 +163,14 @@ fn main() {
                 value(&film)
             })
             .collect();
-        let progressive = mean_squared_error(&estimates, truth) / predicted;
+        let progressive = mean_squared_error(&estimates, truth);
         println!(
-            "{name} {x:?}: {photons} photons, best radius {:.4} m, relative rmse {:.4}; appm {adaptive:.2} times the least MSE (last radius {radius:.4}); ppm {progressive:.2} times its prediction",
+            "{name} {x:?}: {photons} photons, best radius {:.4} m, relative rmse {:.4}; appm {adaptive:.2} times the least MSE (last radius {radius:.4}); ppm: rmse {:.4}, predicted {:.4} (bias {:+.4})",
             best.bandwidth,
-            best.rmse / truth
+            best.rmse / truth,
+            progressive.sqrt() / truth,
+            predicted.sqrt() / truth,
+            bias / truth
         );
     }
 }
