@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod cli;
+pub mod connected_and_merged;
 pub mod diagnosis;
 pub mod entry;
 pub mod error;

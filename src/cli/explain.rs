@@ -186,7 +186,9 @@ fn with_wrapped(left: &str, sentence: &str) -> String {
 
 /// Whether the method has no edge to sample or connect without touching a singularity.
 fn is_irregular(treatment: Treatment) -> bool {
-    !matches!(treatment, Treatment::Exact(_))
+    // What is connected and merged has connections that touch none.
+    let connected = Treatment::Regularized(Technique::ConnectionAndMerging);
+    !matches!(treatment, Treatment::Exact(_)) && treatment != connected
 }
 
 fn treatment(treatment: Treatment) -> &'static str {
@@ -210,5 +212,8 @@ fn technique(treatment: Treatment) -> Option<&'static str> {
         Technique::Symmetric => "symmetric",
         Technique::Merge => "merge",
         Technique::ManifoldSampling => "manifold_sampling",
+        Technique::AdaptiveMerge => "adaptive_merge",
+        Technique::Connection => "connection",
+        Technique::ConnectionAndMerging => "connection_and_merging",
     })
 }

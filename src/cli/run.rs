@@ -10,8 +10,10 @@ use crate::exr_output::{metadata, write_exr};
 use crate::film::Film;
 use crate::integrators::accumulate::{accumulate, paths_per_iteration};
 use crate::integrators::schedule::ALLOWED;
+use crate::integrators::selection::{PILOTS, Selection, Selector, accumulate_selected};
 use crate::integrators::{
-    Heuristic, Integrator, Kernel, Mollified, Plan, Schedule, Settings, Side, Treatment, by_name,
+    Heuristic, Integrator, Kernel, Merging, Mollified, Plan, Schedule, Settings, Side, Statistics,
+    Technique, Treatment, by_name,
 };
 use crate::{entry, exit};
 
@@ -37,8 +39,8 @@ pub struct Args {
     /// Seed of the random numbers.
     #[arg(long, value_name = "K", default_value_t = 1)]
     seed: u64,
-    /// Bandwidth of the regularized classes: an angle in radians for pt-reg and bdpt-reg, a radius in metres for pm; the
-    /// first radius for ppm. Default: 0.2.
+    /// Bandwidth of the regularized classes: an angle in radians for pt-reg and bdpt-reg, a radius in metres for pm and vcm;
+    /// the first radius for ppm, and the largest for appm. Default: 0.2.
     #[arg(long, value_name = "A", conflicts_with = "schedule")]
     bandwidth: Option<f64>,
     /// Bandwidth per iteration n = 1, 2, …: a number, a list `0.3,0.2,0.1` whose last value stays, or an expression such as
@@ -61,6 +63,16 @@ pub struct Args {
     /// Connect a mollified vertex on this side only, camera or light, with bdpt-reg. The expectation stays. Default: both.
     #[arg(long, value_name = "SIDE")]
     technique: Option<Side>,
+    /// How the radii of ppm shrink: by a sequence, or pixel by pixel with the photons met.
+    #[arg(long, value_name = "S", default_value_t)]
+    statistics: Statistics,
+    /// What vcm merges: full (every class), selective (only what no connection samples) or none.
+    #[arg(long, value_name = "M", default_value_t)]
+    merging: Merging,
+    /// Choose the bandwidth of an iteration from those before it: preview (the smallest at which all paths of a pixel miss with
+    /// probability 1e-3 at most) or optimum (of least estimated error). The given bandwidth is the largest.
+    #[arg(long, value_name = "WAY", conflicts_with = "schedule")]
+    select: Option<Select>,
     /// The EXR file to write.
     #[arg(short, long, value_name = "FILE.exr")]
     output: PathBuf,
@@ -74,6 +86,8 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         mollified: args.mollified,
         heuristic: args.heuristic,
         side: args.technique,
+        statistics: args.statistics,
+        merging: args.merging,
         ..Settings::default()
     };
     let integrator = by_name(&args.integrator, &settings)?;
@@ -119,17 +133,38 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         return Ok(exit::NOTHING_RAN);
     }
 
-    let bar = progress(args.paths);
-    accumulate(
-        integrator.prepare(&entry).as_ref(),
-        &schedule,
-        args.seed,
-        args.paths,
-        per_iteration,
-        &mut film,
-        |paths| bar.set_position(paths),
-    );
-    bar.finish_and_clear();
+    let prepared = integrator.prepare(&entry);
+    let schedule = match args.select {
+        Some(way) => {
+            let mut selector = selector(args, way, integrator.as_ref(), &plan, film.pixels())?;
+            let fewest = u64::from(PILOTS) + 1;
+            let per_iteration = per_iteration.min(args.paths.div_ceil(fewest));
+            let (seed, paths) = (args.seed, args.paths);
+            let prepared = prepared.as_ref();
+            Schedule::List(accumulate_selected(
+                prepared,
+                &mut selector,
+                seed,
+                paths,
+                per_iteration,
+                &mut film,
+            ))
+        }
+        None => {
+            let bar = progress(args.paths);
+            accumulate(
+                prepared.as_ref(),
+                &schedule,
+                args.seed,
+                args.paths,
+                per_iteration,
+                &mut film,
+                |paths| bar.set_position(paths),
+            );
+            bar.finish_and_clear();
+            schedule
+        }
+    };
     write(
         args,
         &entry,
@@ -140,6 +175,56 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         per_iteration,
     )?;
     Ok(exit::PASS)
+}
+
+/// How a bandwidth is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Select {
+    Preview,
+    Optimum,
+}
+
+/// Probability that a preview misses a pixel.
+const MISS: f64 = 1e-3;
+
+/// What chooses the bandwidths, where it has something to choose.
+fn selector(
+    args: &Args,
+    way: Select,
+    integrator: &dyn Integrator,
+    plan: &Plan,
+    pixels: usize,
+) -> Result<Selector, Error> {
+    let regularized = |t: Treatment| match t {
+        Treatment::Regularized(technique) => Some(technique),
+        _ => None,
+    };
+    let layers: Vec<usize> = (0..plan.len())
+        .filter(|&k| regularized(plan[k].treatment).is_some())
+        .collect();
+    let techniques = || plan.iter().filter_map(|c| regularized(c.treatment));
+    let name = integrator.name();
+    if layers.is_empty() || techniques().any(|t| t == Technique::AdaptiveMerge) {
+        let allowed = "nothing where no bandwidth is to be chosen";
+        return Err(refused("select", name, allowed));
+    }
+    let selection = match way {
+        Select::Optimum => Selection::Optimum,
+        Select::Preview if techniques().all(|t| t == Technique::Camera) => {
+            Selection::Preview { miss: MISS }
+        }
+        Select::Preview => {
+            let allowed =
+                "preview for methods that connect: a camera path meets many photons at a time";
+            return Err(refused("select", name, allowed));
+        }
+    };
+    let given = args.bandwidth.unwrap_or(DEFAULT_BANDWIDTH);
+    // A mollified interaction on a surface in space has two dimensions.
+    let dimension = 2.0;
+    Ok(Selector::new(
+        selection, given, dimension, args.paths, pixels, layers,
+    ))
 }
 
 /// Writes the image of the classes that are sampled, and prints their means.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::film::{Film, compensated_sum};
-use crate::integrators::Prepared;
+use crate::integrators::{Prepared, Run};
 use crate::verify::replicates::{Canvas, Seeds, Shape};
 
 /// Replicates that are held in memory at a time.
@@ -66,8 +66,9 @@ pub fn sample(
             .map_init(film, |film, k| {
                 film.clear();
                 let seed = seeds.replicate(phase, k);
+                let mut run = Run::of(prepared);
                 for (i, &bandwidth) in (0..).zip(&shape.bandwidths) {
-                    prepared.iterate(seed, i, shape.paths_per_iteration, bandwidth, film);
+                    run.iterate(seed, i, shape.paths_per_iteration, bandwidth, film);
                 }
                 let scale = 1.0 / film.paths as f64;
                 let value = |p| layers.iter().map(|&l| film.layers[l][p]).sum::<f64>() * scale;

@@ -24,6 +24,8 @@ pub fn paths_per_iteration(pixels: usize) -> u64 {
 /// Draws `paths` paths, in iterations of `per_iteration` (the last one may be shorter), each at its bandwidth of the
 /// schedule, and adds them to the film. `done` is told the number of paths drawn so far.
 ///
+/// A method whose iterations learn from each other takes them one by one, on one thread; then the film must be empty.
+///
 /// Iterations beyond 2³² would repeat their random numbers: `paths` must not exceed 2³² `per_iteration`.
 pub fn accumulate(
     prepared: &dyn Prepared,
@@ -35,6 +37,15 @@ pub fn accumulate(
     done: impl Fn(u64),
 ) {
     let per_iteration = per_iteration.max(1);
+    if let Some(mut run) = prepared.learner() {
+        for iteration in 0..paths.div_ceil(per_iteration) {
+            let n = (paths - iteration * per_iteration).min(per_iteration);
+            let bandwidth = schedule.bandwidth(iteration as u32);
+            run.iterate(seed, iteration as u32, n, bandwidth, film);
+            done(film.paths);
+        }
+        return;
+    }
     let bytes = (film.pixels() * film.classes.len() * size_of::<f64>()).max(1);
     let at_a_time = rayon::current_num_threads().min(FILM_BYTES / bytes).max(1);
     let mut films: Vec<Film> = (0..at_a_time)

@@ -204,6 +204,7 @@ impl Deviation for Defect {
             Some(Fault::TinyBandwidthFloor) if bandwidth < 1e-7 => 1e-7,
             Some(Fault::RadiusNotShrinking) => bandwidth / sqrt(ratio(iteration)),
             Some(Fault::ScheduleExponentHalved) => bandwidth / pow(ratio(iteration), 0.25),
+            Some(Fault::RecursionOnRadius) => bandwidth * sqrt(ratio(iteration)),
             Some(Fault::RecursionOffByOne) => {
                 bandwidth * sqrt(ratio(iteration + 1) / ratio(iteration))
             }

@@ -192,6 +192,11 @@ impl CompiledScene {
             }
             _ => None,
         };
+        // Both subpaths end in the diffuse vertex: one vertex more than the path has.
+        let merge = Subpaths {
+            light: class.light.len() + 2,
+            eye: class.eye.len() + 2,
+        };
         let subpaths = match technique {
             None => Vec::new(),
             Some(Technique::NextEvent) => possible(class, Family::NextEvent, None),
@@ -203,10 +208,13 @@ impl CompiledScene {
             // The vertex next to the light is found, not drawn: the same subpaths as if it were mollified.
             Some(Technique::ManifoldSampling) => possible(class, Family::NextEvent, Some(1)),
             Some(Technique::Symmetric) => possible(class, Family::Bidirectional, mollified),
-            Some(Technique::Merge) => vec![Subpaths {
-                light: class.light.len() + 2,
-                eye: class.eye.len() + 2,
-            }],
+            Some(Technique::Merge | Technique::AdaptiveMerge) => vec![merge],
+            Some(Technique::Connection) => possible(class, Family::Bidirectional, None),
+            Some(Technique::ConnectionAndMerging) => {
+                let mut all = possible(class, Family::Bidirectional, None);
+                all.push(merge);
+                all
+            }
         };
         let emission = technique.and_then(|t| self.emission(t, plan));
         let densities = |s: &Subpaths| {
@@ -251,7 +259,7 @@ impl CompiledScene {
         let chains = tracer.chains();
         let chain = chains.iter().position(|c| c.light == plan.class.light)?;
         Some(tracer.emission(match technique {
-            Technique::Merge => Aim::Table(chain),
+            Technique::Merge | Technique::AdaptiveMerge => Aim::Table(chain),
             _ if tracer.beams() == 1 => tracer.aim(0),
             _ => tracer.aim(chain),
         }))

@@ -173,6 +173,18 @@ pub enum Fault {
     DeltaVertexWeighted,
     /// Aimed photons carry the flux of the whole sphere.
     SphereFluxOnAimedPhotons,
+    /// The radius of a pass is chosen with a look at the photons of that pass.
+    RadiusFromCurrentPhotons,
+    /// The recursion of r² applied to r.
+    RecursionOnRadius,
+    /// The radius in place of its square in the weights of merges, not in those of connections.
+    MergingWeightByRadius,
+    /// Paths that are connected and merged count fully in both.
+    ConnectedAndMerged,
+    /// Merges have the weight of the connections.
+    BidirectionalWeightOnMerges,
+    /// Merges are divided by the count that is in the weights, not by the photons of their map.
+    MergesByNominalCount,
     /// The paths of one class are lost.
     ClassDropped(PathClass),
 }

@@ -21,7 +21,7 @@ use super::defect::Defect;
 use super::deviation::Deviation;
 use super::kernel::RadiusKernel;
 use super::photon_grid::{PhotonGrid, Photons};
-use super::photon_mapping::{MAP, PILOT, blocks, kernel_of, map_size};
+use super::photon_mapping::{PILOT, blocks, kernel_of, map_size};
 use super::settings::Settings;
 
 /// A chain of specular interactions, and the photons that can take it.
@@ -158,7 +158,7 @@ impl<L: Light, S: Chains> Prepared for MergedChains<L, S> {
         let (columns, rows) = scene.camera.size();
         let (mut u, mut v) = (zeros(), zeros());
         let mut maps = self.maps();
-        let size = map_size(self.density, kernel.radius, MAP[0]);
+        let size = map_size(self.density, kernel.radius);
         for start in (0..paths).step_by(size as usize) {
             let end = paths.min(start + size);
             maps.iter_mut().for_each(|map| map.photons.clear());

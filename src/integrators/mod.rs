@@ -5,7 +5,9 @@
 //! prepared for the scene once, and an iteration adds the contributions of N paths at one bandwidth to a film.
 
 pub mod accumulate;
+mod adaptive_radius;
 mod aim_of_photons;
+pub mod appm;
 mod bdpt;
 mod bidirectional;
 mod bidirectional_walks;
@@ -15,11 +17,13 @@ mod connection;
 mod defect;
 pub mod details;
 mod deviation;
+mod eye_block;
 mod fault;
 #[cfg(test)]
 mod full_paths;
 mod furnace;
 pub mod kernel;
+pub mod learning;
 mod lt;
 mod manifold_defect;
 mod manifold_walk;
@@ -28,6 +32,8 @@ mod mis;
 mod mollified_vertex;
 mod photon_grid;
 mod photon_mapping;
+mod photon_maps;
+pub mod pixel_statistics;
 mod plan;
 mod pm;
 mod ppm;
@@ -37,16 +43,21 @@ mod pt_reg;
 mod regularized_chains;
 pub mod sampleable;
 pub mod schedule;
+pub mod selection;
 mod settings;
 mod shared_connections;
 mod sms;
 mod stage;
+pub mod vcm;
 
+pub use appm::Appm;
 pub use bdpt::Bdpt;
 pub use fault::Fault;
 pub use kernel::Kernel;
+pub use learning::{Learner, Run};
 pub use lt::Lt;
 pub use mis::{Heuristic, Side};
+pub use pixel_statistics::Statistics;
 pub use pm::Pm;
 pub use ppm::Ppm;
 pub use pt::Pt;
@@ -55,6 +66,7 @@ pub use schedule::Schedule;
 pub use settings::{Mollified, Settings};
 pub use sms::Sms;
 pub use stage::Sight;
+pub use vcm::{Merging, Vcm};
 
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
@@ -79,7 +91,7 @@ pub enum Treatment {
     /// Sampled without bias: judged against the closed form.
     Exact(Technique),
     /// Every edge touches a singularity: sampled with a mollified delta at the bandwidth, judged against the exact
-    /// expectation at that bandwidth.
+    /// expectation at that bandwidth. So is a class that [`Technique::ConnectionAndMerging`] merges without need.
     Regularized(Technique),
     /// The method cannot build such a path.
     NotSampled,
@@ -104,6 +116,12 @@ pub enum Technique {
     Merge,
     /// Newton's method on the specular constraint, from random points of the surface.
     ManifoldSampling,
+    /// Merging within a radius that depends on the photons of earlier iterations: its expectation is known only given the radii.
+    AdaptiveMerge,
+    /// Next event estimation and light tracing, those of them that can build the path, combined.
+    Connection,
+    /// The same, and merging.
+    ConnectionAndMerging,
 }
 
 impl Technique {
@@ -181,6 +199,12 @@ pub trait Prepared: Send + Sync {
     fn share_of_emission(&self, _bandwidth: f64) -> f64 {
         1.0
     }
+
+    /// A run whose iterations learn from those before them; `None` for methods of which each iteration stands alone.
+    /// See [`Run`].
+    fn learner(&self) -> Option<Box<dyn Learner + '_>> {
+        None
+    }
 }
 
 /// Whether the regularizing methods know the kind of the scene: those with a floor.
@@ -212,7 +236,9 @@ pub fn all() -> Vec<Box<dyn Integrator>> {
 }
 
 /// The names of the methods, in the order in which they are listed.
-pub const NAMES: [&str; 8] = ["pt", "pt-reg", "lt", "pm", "ppm", "bdpt", "bdpt-reg", "sms"];
+pub const NAMES: [&str; 10] = [
+    "pt", "pt-reg", "lt", "pm", "ppm", "appm", "vcm", "bdpt", "bdpt-reg", "sms",
+];
 
 /// The names of kernels on a distance, for messages.
 const PLANAR: &str = "disc, epanechnikov, biweight, cone";
@@ -250,7 +276,18 @@ pub fn by_name(name: &str, settings: &Settings) -> Result<Box<dyn Integrator>, E
         }
         "ppm" => {
             takes(Kernel::is_planar, PLANAR)?;
+            if settings.statistics == Statistics::Pixel {
+                takes(|k| k == Kernel::Disc, "disc (with statistics of pixels)")?;
+            }
             Box::new(Ppm::new(settings))
+        }
+        "appm" => {
+            takes(Kernel::is_planar, PLANAR)?;
+            Box::new(Appm::new(settings))
+        }
+        "vcm" => {
+            takes(Kernel::is_planar, PLANAR)?;
+            Box::new(Vcm::new(settings))
         }
         _ => {
             return Err(Error::UnknownName {

@@ -39,7 +39,7 @@ use super::{ClassPlan, Plan, Prepared, Technique, Treatment, Unsupported};
 /// Photons that a camera path meets in the nine cells around its vertex, about.
 const MET: f64 = 128.0;
 /// Photons traced for a map, at least and at most: powers of two.
-pub(super) const MAP: [u64; 2] = [1 << 12, 1 << 18];
+const MAP: [u64; 2] = [1 << 12, 1 << 18];
 /// Photons traced to find out how dense they lie.
 pub(super) const PILOT: u64 = 1 << 13;
 
@@ -62,6 +62,17 @@ pub(super) fn merging_plan(entry: &Entry, kernel: Kernel) -> Plan {
                     "the mirror"
                 }
             ),
+        })
+    })
+}
+
+/// The plan of a method that merges at radii of its own choice.
+pub(super) fn adaptive_plan(entry: &Entry, how: &str) -> Plan {
+    plan_of(entry, |class| {
+        next_event_plan(class).unwrap_or_else(|| ClassPlan {
+            class,
+            treatment: Treatment::Regularized(Technique::AdaptiveMerge),
+            reason: format!("irregular: light and specular vertex are both singular; {how}"),
         })
     })
 }
@@ -203,8 +214,13 @@ impl<L: Light, S: Specular, D: Deviation> PhotonMapping<L, S, D> {
     }
 }
 
-/// Photons for a map, a power of two of at least `least`, from their density per photon traced.
-pub(super) fn map_size(density: f64, radius: f64, least: u64) -> u64 {
+/// Photons for a map, from their density per photon traced.
+pub(super) fn map_size(density: f64, radius: f64) -> u64 {
+    map_size_of_at_least(MAP[0], density, radius)
+}
+
+/// The same, a power of two of at least `least`.
+fn map_size_of_at_least(least: u64, density: f64, radius: f64) -> u64 {
     let met = density * 9.0 * radius * radius;
     let mut size = least;
     // No photon at all gives NaN, and the smallest map.
@@ -235,7 +251,7 @@ impl<L: Light, S: Specular, D: Deviation> Prepared for PhotonMapping<L, S, D> {
         let share = part.map_or(1.0, Part::share);
         // Photons that are aimed are so dense that a block of them is map enough.
         let least = if part.is_some() { BLOCK as u64 } else { MAP[0] };
-        let size = map_size(density, kernel.radius, least);
+        let size = map_size_of_at_least(least, density, kernel.radius);
         for start in (0..paths).step_by(size as usize) {
             let end = paths.min(start + size);
             if S::EXISTS {

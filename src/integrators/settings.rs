@@ -5,6 +5,8 @@ use core::str::FromStr;
 use super::fault::Fault;
 use super::kernel::Kernel;
 use super::mis::{Heuristic, Side};
+use super::pixel_statistics::Statistics;
+use super::vcm::Merging;
 
 /// How an integrator is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +19,10 @@ pub struct Settings {
     pub heuristic: Heuristic,
     /// The only side on which bidirectional methods connect a mollified vertex; `None` for both.
     pub side: Option<Side>,
+    /// How the radii of progressive photon mapping shrink.
+    pub statistics: Statistics,
+    /// What vertex connection and merging merges.
+    pub merging: Merging,
     /// A defect, to test what judges the integrator.
     pub fault: Option<Fault>,
     /// Whether photons are limited to those that can land within the radius of what the camera sees: for studies of small

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use nephroid_analytic::bandwidth::{Kernel, Technique as Mollified};
+use nephroid_analytic::bandwidth::{Kernel, Moments, Technique as Mollified};
 use nephroid_analytic::camera::Bounded;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
@@ -12,17 +12,24 @@ use crate::error::Error;
 use crate::integrators::{Plan, Technique, Treatment};
 use crate::regions::{Area, Regions};
 use crate::truth::TruthImage;
-use crate::{expectation, truth};
+use crate::{connected_and_merged, expectation, truth};
 
 /// Relative tolerance of the class means as a part of the margin. What is reached is a part of every test, and takes about
 /// this much from the margin.
 const TOLERANCE_PER_MARGIN: f64 = 0.02;
 
+/// What an expectation at finite bandwidth is one of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Estimate {
+    Mollified(Mollified),
+    ConnectedAndMerged,
+}
+
 /// What a finite-bandwidth expectation depends on.
 #[derive(Clone, Debug, PartialEq)]
 struct Finite {
     scene: usize,
-    technique: Mollified,
+    estimate: Estimate,
     kernel: Kernel,
     bandwidths: Vec<f64>,
     regions: Regions,
@@ -115,12 +122,12 @@ impl Truths {
                         }
                     })
                 }
-                Treatment::Regularized(technique) => match mollified(technique) {
-                    Some(technique) => {
+                Treatment::Regularized(technique) => match estimate(technique) {
+                    Some((estimate, default)) => {
                         let key = Finite {
                             scene,
-                            technique,
-                            kernel: kernel.unwrap_or(technique.default_kernel()),
+                            estimate,
+                            kernel: kernel.unwrap_or(default),
                             bandwidths: bandwidths.to_vec(),
                             regions: regions.clone(),
                         };
@@ -147,31 +154,62 @@ impl Truths {
         let position = match self.finite.iter().position(|(k, _)| *k == key) {
             Some(position) => position,
             None => {
-                // No test asks for second moments.
-                let moments = expectation::area_moments(
-                    entry,
-                    key.technique,
-                    key.kernel,
-                    &key.bandwidths,
-                    [self.tolerance, f64::INFINITY],
-                    &key.regions,
-                )
-                .map_err(|e| Error::Parameter {
+                let means = match key.estimate {
+                    // No test asks for second moments.
+                    Estimate::Mollified(technique) => expectation::area_moments(
+                        entry,
+                        technique,
+                        key.kernel,
+                        &key.bandwidths,
+                        [self.tolerance, f64::INFINITY],
+                        &key.regions,
+                    )
+                    .map(|moments| {
+                        let means = |areas: Vec<Moments>| areas.iter().map(|m| m.mean).collect();
+                        moments.into_iter().map(|(c, a)| (c, means(a))).collect()
+                    }),
+                    Estimate::ConnectedAndMerged => {
+                        let tolerance = self.tolerance;
+                        let image = self
+                            .exact
+                            .entry(key.scene)
+                            .or_insert_with(|| truth::image(entry, tolerance));
+                        connected_and_merged::area_means(
+                            entry,
+                            key.kernel,
+                            &key.bandwidths,
+                            tolerance,
+                            &key.regions,
+                            image,
+                        )
+                    }
+                };
+                let means = means.map_err(|e| Error::Parameter {
                     file: "command line".to_owned(),
                     key: format!("--{}", e.key),
                     found: e.found,
                     allowed: e.allowed,
                 })?;
-                let means = moments
-                    .into_iter()
-                    .map(|(class, areas)| (class, areas.iter().map(|m| m.mean).collect()))
-                    .collect();
                 self.finite.push((key, means));
                 self.finite.len() - 1
             }
         };
         Ok(&self.finite[position].1)
     }
+}
+
+/// What a regularizing technique estimates, and the kernel that is meant where none is named; `None` where it is not known.
+fn estimate(technique: Technique) -> Option<(Estimate, Kernel)> {
+    if technique == Technique::ConnectionAndMerging {
+        let default = Mollified::Merge.default_kernel();
+        return Some((Estimate::ConnectedAndMerged, default));
+    }
+    mollified(technique).map(|t| (Estimate::Mollified(t), t.default_kernel()))
+}
+
+/// Whether an expectation at finite bandwidth is known for a technique, on the kinds for which any is.
+pub fn is_judged(technique: Technique) -> bool {
+    estimate(technique).is_some()
 }
 
 /// The name under which the truth knows a regularizing technique.
@@ -184,6 +222,9 @@ pub const fn mollified(technique: Technique) -> Option<Mollified> {
         | Technique::Bidirectional
         | Technique::LightTracing
         | Technique::ManifoldSampling
-        | Technique::CameraEveryVertex => None,
+        | Technique::CameraEveryVertex
+        | Technique::Connection
+        | Technique::ConnectionAndMerging
+        | Technique::AdaptiveMerge => None,
     }
 }

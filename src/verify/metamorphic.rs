@@ -17,7 +17,7 @@ use super::run::{Job, Request, first_shape};
 use super::suite::Pair;
 use super::verdicts::{NotRun, Verdict};
 use crate::error::Error;
-use crate::integrators::{Integrator, NO_BANDWIDTH, Treatment};
+use crate::integrators::{Integrator, NO_BANDWIDTH, Technique, Treatment};
 use crate::judge::hypotheses::Levels;
 use crate::regions::Regions;
 use crate::variation::Variation;
@@ -92,6 +92,20 @@ pub(super) fn jobs(
     }
     for candidates in candidates(request, pairs) {
         for change in CHANGES {
+            let whole_view = |&p: &usize| {
+                let combined = Treatment::Regularized(Technique::ConnectionAndMerging);
+                pairs[p].plan.iter().any(|c| c.treatment == combined)
+            };
+            if change == Change::Scene(Variation::Cropped) && candidates.iter().any(whole_view) {
+                let [scene, integrator] = names(request, &pairs[candidates[0]]);
+                not_run.push(NotRun {
+                    scene,
+                    integrator,
+                    reason: "cropped to the middle: weights depend on all of the view, so that the mean of a part changes"
+                        .to_owned(),
+                });
+                continue;
+            }
             let chosen = match change {
                 Change::Scene(Variation::Cropped) => {
                     first_to_crop(request, pairs, &candidates, truths)?

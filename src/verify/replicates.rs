@@ -8,7 +8,7 @@ use nephroid_analytic::class::PathClass;
 use rayon::prelude::*;
 
 use crate::film::Film;
-use crate::integrators::Prepared;
+use crate::integrators::{Prepared, Run};
 use crate::judge::evidence::Replicate;
 use crate::regions::Regions;
 use crate::stream::philox;
@@ -85,8 +85,9 @@ pub fn run(
         .map_init(film, |film, k| {
             film.clear();
             let seed = seeds.replicate(phase, k);
+            let mut run = Run::of(prepared);
             for (i, &bandwidth) in (0..).zip(&shape.bandwidths) {
-                prepared.iterate(seed, i, shape.paths_per_iteration, bandwidth, film);
+                run.iterate(seed, i, shape.paths_per_iteration, bandwidth, film);
             }
             Replicate::of_film(film, regions)
         })

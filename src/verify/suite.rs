@@ -2,10 +2,10 @@
 
 use nephroid_analytic::scene::Entry;
 
-use super::expected::mollified;
+use super::expected::{is_judged, mollified};
 use super::verdicts::NotRun;
 use crate::expectation;
-use crate::integrators::{ClassPlan, Integrator, Plan, Treatment};
+use crate::integrators::{ClassPlan, Integrator, Plan, Technique, Treatment};
 
 /// A scene as the user named it.
 pub struct Subject {
@@ -161,6 +161,13 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
     if let Err(reason) = integrator.supports(entry) {
         return Some(reason);
     }
+    let adaptive = Treatment::Regularized(Technique::AdaptiveMerge);
+    if plan.iter().any(|c| c.treatment == adaptive) {
+        return Some(
+            "the radius depends on the photons: an expectation is known only given the radii of a run (tests hold it to that)"
+                .to_owned(),
+        );
+    }
     let mut regularized: Vec<_> = plan
         .iter()
         .filter_map(|c| match c.treatment {
@@ -173,6 +180,10 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
         .into_iter()
         .find_map(|technique| match mollified(technique) {
             Some(technique) => expectation::unknown(entry, technique),
+            None if is_judged(technique) => (!expectation::is_planar(&entry.kind)).then(|| {
+                let kind = entry.kind.name();
+                format!("no exact expectation of connections with merging for the kind {kind}")
+            }),
             None => Some("no exact expectation of its technique".to_owned()),
         })
 }

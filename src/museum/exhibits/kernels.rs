@@ -8,6 +8,9 @@ const WIDE: f64 = 0.6;
 /// A first radius at which the bias is large, so that another schedule shows.
 const WIDEST: f64 = 0.8;
 
+/// A radius at which connections and merges share.
+const NARROW: f64 = 0.05;
+
 pub(super) const EXHIBITS: &[Exhibit] = &[
     Exhibit::new(
         "kernel-on-tangent-plane",
@@ -145,5 +148,53 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
         "https://github.com/mitsuba-renderer/mitsuba (src/integrators/photonmapper/sppm.cpp: flux rescaled by the shrunk radius)",
         "film: sums of old iterations",
         &[on("ppm", "museum-wall")],
+    ),
+    Exhibit::new(
+        "norm-of-another-kernel",
+        Fault::NormOfAnotherKernel,
+        "A disc with the normalisation of Epanechnikov's kernel.",
+        "https://github.com/mitsuba-renderer/mitsuba (src/librender/photonmap.cpp: a kernel's own factor 3/π)",
+        "kernel: normalisation",
+        &[on("pm", "museum-wall")],
+    ),
+    Exhibit::new(
+        "recursion-on-radius",
+        Fault::RecursionOnRadius,
+        "The recursion of r² is applied to r.",
+        "https://github.com/tunabrain/tungsten (src/core/integrators/progressive_photon_map: the root is taken for surfaces)",
+        "bandwidth of an iteration",
+        &[at("ppm", "museum-wall", WIDEST)],
+    ),
+    Exhibit::new(
+        "merging-weight-by-radius",
+        Fault::MergingWeightByRadius,
+        "The weight of a merge has the radius in place of its square; that of a connection is right.",
+        "https://github.com/SmallVCM/SmallVCM (src/vertexcm.hxx: etaVCM, π r² N)",
+        "combination: weight of merges",
+        &[at("vcm", "museum-wall", NARROW)],
+    ),
+    Exhibit::new(
+        "connected-and-merged",
+        Fault::ConnectedAndMerged,
+        "A path that is connected and merged counts fully in both.",
+        "https://github.com/embree/embree/issues/491 (the same path by two strategies)",
+        "combination: weights",
+        &[on("vcm", "museum-wall")],
+    ),
+    Exhibit::new(
+        "connection-weight-on-merges",
+        Fault::BidirectionalWeightOnMerges,
+        "Merges have the weight of the connections: what no connection samples is lost.",
+        "https://github.com/SmallVCM/SmallVCM (src/vertexcm.hxx: weights of merges)",
+        "combination: weight of merges",
+        &[on("vcm", "museum-wall")],
+    ),
+    Exhibit::new(
+        "merges-by-nominal-count",
+        Fault::MergesByNominalCount,
+        "Merges are divided by the count that the weights have, not by the photons of their map.",
+        "https://github.com/SmallVCM/SmallVCM (src/vertexcm.hxx: vmNormalization and etaVCM must have one count)",
+        "photon map: normalisation",
+        &[on("vcm", "museum-wall")],
     ),
 ];
