@@ -88,6 +88,12 @@ impl Pair {
         }
     }
 
+    /// Whether the integrator regularizes a class of the scene.
+    fn regularizes(&self) -> bool {
+        let regularized = |c: &ClassPlan| matches!(c.treatment, Treatment::Regularized(_));
+        self.plan.iter().any(regularized)
+    }
+
     /// Whether its truth or its paths take minutes.
     fn is_dear(&self) -> bool {
         self.truth != TruthCost::Low || self.has_dear_paths
@@ -188,30 +194,34 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
         })
 }
 
-/// Marks a covering subset. Each integrator takes the entries on which it claims the most classes, dear ones last; then
-/// entries that still lack integrators take those that claim the most. Ties go to the first. Pairs that claim nothing cost
-/// nothing and stay.
+/// Marks a covering subset, dear pairs last. Each integrator takes entries with a class that it regularizes first, then those with
+/// more classes, of which three are as good as many; then entries that still lack integrators take the first that claim anything.
+/// Ties go to the first. Pairs that claim nothing cost nothing and stay.
 fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
+    const MANY: usize = 3;
     let classes: Vec<usize> = pairs.iter().map(|p| p.claimed().len()).collect();
     let mut keep: Vec<bool> = classes.iter().map(|&c| c == 0).collect();
-    let cover = |belongs: &dyn Fn(&Pair) -> bool, keep: &mut Vec<bool>| {
+    let worth = |k: usize| (pairs[k].regularizes(), classes[k].min(MANY));
+    let cover = |belongs: &dyn Fn(&Pair) -> bool,
+                 worth: &dyn Fn(usize) -> (bool, usize),
+                 keep: &mut Vec<bool>| {
         let mut candidates: Vec<usize> = (0..pairs.len())
             .filter(|&k| classes[k] > 0 && belongs(&pairs[k]))
             .collect();
         candidates.sort_by_key(|&k| {
             let p = &pairs[k];
             let cost = (p.is_dear(), p.truth);
-            (!keep[k], cost, core::cmp::Reverse(classes[k]))
+            (!keep[k], cost, core::cmp::Reverse(worth(k)))
         });
         for k in candidates.into_iter().take(COVER) {
             keep[k] = true;
         }
     };
     for i in 0..integrators {
-        cover(&|p| p.integrator == i, &mut keep);
+        cover(&|p| p.integrator == i, &worth, &mut keep);
     }
     for s in 0..scenes {
-        cover(&|p| p.scene == s, &mut keep);
+        cover(&|p| p.scene == s, &|_| (false, 0), &mut keep);
     }
     keep
 }
