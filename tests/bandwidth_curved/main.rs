@@ -1,6 +1,8 @@
 //! Expectations at finite bandwidth on any surface, against what shares no code with the cells: the tables, the plane mirror's
 //! polar coordinates, closed forms averaged over a disc, small bandwidths, units, and the error bounds themselves.
 
+mod charts;
+
 use std::f64::consts::PI;
 use std::fs;
 use std::path::PathBuf;
