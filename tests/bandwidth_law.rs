@@ -91,12 +91,14 @@ proptest! {
         let Some(x) = lit(&entry, rank) else { return Ok(()) };
         let s = study(&entry, technique, kernel);
         for (class, law) in s.laws(x[0], x[1]).into_iter().enumerate() {
-            // Only a linked bandwidth on a wall has none.
+            // Only a linked bandwidth on a wall may have none.
             let Some(law) = law else {
                 prop_assert!(technique == Technique::Linked, "{} {} {:?}", SCENES[scene], technique, x);
                 continue;
             };
             prop_assume!(law.place == Place::Smooth);
+            // The foot of a wall adds a term of the next order, which has a test of its own.
+            prop_assume!(technique != Technique::Linked || SCENES[scene] != "pillar");
             let a = 0.06 * law.reach.min(0.5);
             let mut bound = 0.0;
             let found = extrapolated(|b| {

@@ -76,6 +76,10 @@ pub(super) trait Integrand {
     fn coarse(&self) -> [u32; 2] {
         [2, 2]
     }
+    /// Second parameters, ascending, between which a thin layer at the low end of the domain is wide; none where there is none.
+    fn layers(&self) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 /// Roots that are taken out one by one; beyond, the parameters are cut.
@@ -108,6 +112,16 @@ pub(super) fn integrate<I: Integrand>(integrand: &I, tolerance: f64, floor: [f64
         ] {
             if part.iter().all(|[low, high]| low < high) {
                 boxes.push((part, roots + 1));
+            }
+        }
+    }
+    // Nine samples do not see a layer that is thin beside their cell.
+    for at in integrand.layers() {
+        for k in 0..rest.len() {
+            let [a, [low, high]] = rest[k];
+            if low < at && at < high {
+                rest[k] = [a, [low, at]];
+                rest.push([a, [at, high]]);
             }
         }
     }

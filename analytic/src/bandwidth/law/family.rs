@@ -66,19 +66,24 @@ impl Map<'_> {
         }
     }
 
-    /// Whether a linked distance vanishes somewhere on the border of the surface.
-    pub fn has_foot(&self) -> bool {
-        let Map::Linked(_, distances) = self else {
-            return false;
+    /// The linked distance of a path [m]; infinite where nothing is linked.
+    pub fn linked_distance(&self, u: [f64; 2]) -> f64 {
+        match self {
+            Map::Linked(_, distances) => distances.node(u).distance,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The chord of the deflection, and what multiplies the kernel and its square; `None` where there is no path.
+    pub fn connection(&self, u: [f64; 2]) -> Option<(f64, [f64; 2])> {
+        let Map::Linked(c, distances) = self else {
+            return None;
         };
-        let [a, b] = self.domain();
-        (0..=32).any(|k| {
-            let t = f64::from(k) / 32.0;
-            let [x, y] = [a, b].map(|[low, high]| low + (high - low) * t);
-            [[x, b[0]], [x, b[1]], [a[0], y], [a[1], y]]
-                .into_iter()
-                .any(|u| f64::abs(distances.node(u).distance) < 1e-9)
-        })
+        let node = c.node(u);
+        // The exact ray lands on the floor as well.
+        let exists = |m: &[f64; MARGINS]| m.iter().all(|m| *m >= 0.0);
+        let lands = exists(&node.margins) && exists(&distances.node(u).margins);
+        lands.then(|| (libm::sqrt(node.square()), node.density))
     }
 
     /// The path of a pair of parameters, which may be outside the rectangle where the surface has a continuation.

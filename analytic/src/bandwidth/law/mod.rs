@@ -10,7 +10,7 @@
 //! | --- | --- | --- | --- |
 //! | smooth | E₀ | 2 | a quarter of the Laplacian of weight/Jacobian, times ⟨t²⟩ (`smooth`) |
 //! | edge (of the mirror, its shadow, the receiver) | E₀ times the share of directions inside | 1 | `smooth` |
-//! | dark | 0 | none: exactly 0 below `reach` | 0 |
+//! | dark | 0 | none: exactly 0 below `reach` (2 under a linked bandwidth, by the foot of a wall) | 0 (`foot`) |
 //! | fold, cusp, line focus, point focus | none | −1/2, −2/3, −1, −2 | `singular` |
 //!
 //! All of it comes from derivatives of the offsets of paths (the chord of the deflection, the way on the floor) at the perfect
@@ -24,6 +24,7 @@
 pub mod closed;
 mod constants;
 pub(in crate::bandwidth) mod family;
+mod foot;
 mod jet;
 mod roots;
 mod singular;
@@ -32,6 +33,7 @@ mod smooth;
 use crate::bandwidth::light::Class;
 use constants::Shape;
 use family::{Family, Map};
+use foot::Foot;
 use roots::{Found, complete, find};
 use singular::Leading;
 
@@ -85,7 +87,7 @@ pub struct Law {
     pub place: Place,
     /// Limit of the mean [W/m²]; `None` where it grows without bound.
     pub limit: Option<f64>,
-    /// Exponent p of the next term; `None` in the dark.
+    /// Exponent p of the next term; `None` in the dark, unless the foot of a wall is linked.
     pub order: Option<f64>,
     /// Its coefficient [W/m² per bandwidthᵖ].
     pub coefficient: f64,
@@ -146,6 +148,8 @@ const LOOKS: [usize; 4] = [16, 32, 64, 128];
 const AGREES: f64 = 1e-6;
 /// A point is on a caustic if it is nearer than this, in natural units of the offset.
 const ON: f64 = 1e-8;
+/// Linked distances below this are those of a foot [m].
+const FOOT: f64 = 1e-6;
 /// Rings have more degenerate roots than a fold or a cusp.
 const RING: usize = 3;
 
@@ -202,9 +206,9 @@ impl SmallBandwidth {
         self.family.classes.iter().map(|c| c.class).collect()
     }
 
-    /// The law at the floor point (x, y), per class; `None` where the limit found does not agree with the closed form, and for a linked
-    /// bandwidth on a wall that stands on the floor: at its foot the distance vanishes and the kernel opens to a half-space, whose
-    /// share of the bias is of the same order r² and is not derived here.
+    /// The law at the floor point (x, y), per class; `None` where the limit found does not agree with the closed form. At the foot of a
+    /// wall that stands on the floor a linked distance vanishes and the kernel opens to a half-space: its share of the bias is of
+    /// the same order r² and included (`foot`), so that a dark point is of order 2 there; the next order is r³, not r⁴.
     ///
     /// **Accuracy**: smooth coefficients as stated by their error, about 1e-8 relative; of singularities 1e-5.
     pub fn at(&self, x: f64, y: f64) -> Vec<Option<Law>> {
@@ -244,11 +248,21 @@ impl SmallBandwidth {
         };
         let (mut edge, mut first) = (false, 0.0);
         let mut leading: Option<(Place, Leading)> = None;
+        let mut foot = Foot::default();
         for map in &self.family.maps(class, x) {
-            if map.has_foot() {
-                return None;
+            if foot::stands(map).ok()? {
+                let share = foot::share(map, self.family.kernel);
+                (foot.mean, foot.squared) = (foot.mean + share.mean, foot.squared + share.squared);
             }
             let mut found = find(map, cells, unit);
+            // At a foot the offset vanishes with the distance, and no path is perfect.
+            let off_the_foot = |found: &mut Found| {
+                let is_linked = |u: &[f64; 2]| map.linked_distance(*u) > FOOT;
+                found.regular.retain(is_linked);
+                found.degenerate.retain(is_linked);
+                found.approaches.retain(|(u, _)| is_linked(u));
+            };
+            off_the_foot(&mut found);
             // Roots come in pairs at a fold: the other one is across.
             let mut folds = Vec::new();
             for k in 0..found.regular.len() {
@@ -259,6 +273,7 @@ impl SmallBandwidth {
                     complete(map, across, unit, &mut found);
                 }
             }
+            off_the_foot(&mut found);
             let singular = self.singularity(map, &found, unit);
             // A path that is both perfect and degenerate, and of which more is not known.
             let hidden = |u: &[f64; 2]| libm::sqrt(map.at(*u).square()) <= ON * unit;
@@ -304,8 +319,12 @@ impl SmallBandwidth {
             (law.coefficient, law.error) = (first, 0.0);
             return Some(law);
         }
+        law.coefficient += foot.mean;
         if law.roots > 0 {
             (law.place, law.order) = (Place::Smooth, Some(2.0));
+        } else if foot.mean > 0.0 {
+            law.order = Some(2.0);
+            (law.squared_order, law.squared) = (-3.0, foot.squared);
         }
         let limit = law.limit?;
         let agrees = truth.is_none_or(|t| f64::abs(limit - t) <= AGREES * t.max(1e-12));
