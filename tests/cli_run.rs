@@ -89,7 +89,7 @@ fn what_cannot_be_run_says_why_and_writes_nothing() {
         ),
         (&["nowhere", "--integrator", "pt"], 2, "nowhere"),
         (
-            &["floor", "--integrator", "bdpt"],
+            &["floor", "--integrator", "mlt"],
             2,
             "pt, pt-reg, lt, pm, ppm",
         ),

@@ -170,7 +170,7 @@ fn the_crossed_pixels_of_the_cup_are_those_along_the_nephroid() {
     let count = crossed.iter().filter(|c| **c).count();
     assert!(count > 50 && doubtful < 5, "{count} {doubtful}");
     // The upper border of the wall is a row or two of pixels, of which a point is far from the next one.
-    assert!(borders < 160, "{borders}");
+    assert!(borders <= 2 * entry.camera.width as usize, "{borders}");
     println!("{count} pixels, of which {borders} on the wall's border");
     // A floor without a fold loses nothing.
     let floor = entry::load("floor").unwrap();

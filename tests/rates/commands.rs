@@ -107,7 +107,7 @@ fn answers_have_the_keys_of_the_contract_and_exit_codes_say_what_follows() {
         "0.4,0.2",
     ];
     let (code, text, _) = nephroid("2", &unknown);
-    assert!(code == 4 && text.contains("cylinder-cup"), "{text}");
+    assert!(code == 4 && text.contains("name a --region"), "{text}");
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn every_vertex_of_a_chain_of_two_has_its_exact_moments() {
             0.6,
             6000,
         ),
-        (POINTS[0], Kernel::Cone, TruthKernel::Cone, 0.3, 10_000),
+        (POINTS[0], Kernel::Cone, TruthKernel::Cone, 0.3, 20_000),
     ] {
         let integrator = PtReg::new(Settings {
             kernel: Some(kernel),

@@ -94,7 +94,8 @@ fn manifold_sampling_has_the_closed_form_on_every_surface() {
                 measure(prepared.as_ref(), &entry, 0.0, REPLICATES, 1000);
             let (mean, error) = (mean[layer], error[layer]);
             assert!(error < 0.03 * truth, "{name} {point:?}: {error} of {truth}");
-            exact += usize::from(error < 1e-9 * truth);
+            // What is left is how the patch varies, over the root of the number of paths.
+            exact += usize::from(error < 1e-5 * truth);
             assert!(
                 (mean - truth).abs() < STANDARD_ERRORS * error + PATCH * truth,
                 "{name} {point:?}: {mean} ± {error}, {truth}"

@@ -22,6 +22,9 @@ use super::tile::{Sampled, Tile, refine, together};
 use crate::class::PathClass;
 use crate::scene::{Entry, InvalidParameter};
 
+/// Tiles along each axis of a region to begin with: a lit patch that has none of their samples, four along an axis each, is missed, and
+/// nothing tells.
+const GRID: u32 = 8;
 /// Tiles sampled at most for one region.
 const MOST: usize = 20_000;
 /// Part of the tolerance that the samples of a tile are known to.
@@ -179,7 +182,7 @@ impl FrameExpectation {
             let slack = [1.0, SLACK];
             [0, 1].map(|k| slack[k] * tolerance * f64::max(sum[k], floor[k]))
         };
-        refine(vec![Tile { low, high }], MOST, goal, |tiles| {
+        refine(grid(low, high), MOST, goal, |tiles| {
             let one = |t: &Tile| self.sample(class, *t, SAMPLES * tolerance, typical);
             tiles.iter().map(one).collect()
         })
@@ -207,4 +210,25 @@ impl FrameExpectation {
             error: [0, 1].map(|k| scales[k] * m[k].error),
         }
     }
+}
+
+/// The first tiles of a region, cut between pixels where there are enough.
+fn grid(low: [f64; 2], high: [f64; 2]) -> Vec<Tile> {
+    let cut = |k: usize, i: u32| {
+        let size = high[k] - low[k];
+        let at = low[k] + size * f64::from(i) / f64::from(GRID);
+        if size >= f64::from(GRID) {
+            libm::floor(at)
+        } else {
+            at
+        }
+    };
+    let tile = |n: u32| {
+        let at = [n % GRID, n / GRID];
+        Tile {
+            low: [cut(0, at[0]), cut(1, at[1])],
+            high: [cut(0, at[0] + 1), cut(1, at[1] + 1)],
+        }
+    };
+    (0..GRID * GRID).map(tile).collect()
 }
