@@ -378,9 +378,11 @@ impl Bidirectional {
                 Side::Camera => {
                     uniforms(stream, first, Dimension::Direction, u, v);
                     self.defect.numbers(Dimension::Direction, u, v);
-                    joints.from_camera(&*self.tracer, floor, [u, v], &joint, kernel);
+                    joints.meet_from_camera(&*self.tracer, floor, [u, v], &joint, kernel);
                 }
-                Side::Light => joints.from_light(&*self.tracer, photons, floor, &joint, kernel),
+                Side::Light => {
+                    joints.meet_from_light(&*self.tracer, photons, floor, &joint, kernel)
+                }
             }
             radiance(eye, scale, &joints.value, value);
             block.splat(CAUSTIC, film);

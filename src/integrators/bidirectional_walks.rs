@@ -270,14 +270,13 @@ mod tests {
                 let seen = walks.scene.hit(camera.position, direction);
                 let eye = walks.walk(seen, &turns[1], i);
                 for length in 1..=3 {
-                    for drawn in 0..=length {
+                    for (drawn, sum) in sums[length - 1][..=length].iter_mut().enumerate() {
                         let m = walks.measures(&joined(&light, &eye, drawn, length));
                         let value = if m.brought > 0.0 {
                             m.brought / m.densities[drawn]
                         } else {
                             0.0
                         };
-                        let sum = &mut sums[length - 1][drawn];
                         sum[0] += value;
                         sum[1] += value * value;
                     }

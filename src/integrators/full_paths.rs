@@ -175,7 +175,7 @@ fn weights_of_a_full_path_from_either_side_sum_to_one() {
                 let floor = [&x, &y];
                 let mut camera = [zeros(), zeros()];
                 for (shared, value) in [false, true].into_iter().zip(&mut camera) {
-                    joints.from_camera(&*tracer, floor, [&u, &v], &joint(shared), &kernel);
+                    joints.meet_from_camera(&*tracer, floor, [&u, &v], &joint(shared), &kernel);
                     *value = joints.value;
                 }
                 // Photons from the light to the same vertices, from just before them.
@@ -191,7 +191,7 @@ fn weights_of_a_full_path_from_either_side_sum_to_one() {
                 }
                 let mut light = [zeros(), zeros()];
                 for (shared, value) in [false, true].into_iter().zip(&mut light) {
-                    joints.from_light(&*tracer, &photons, floor, &joint(shared), &kernel);
+                    joints.meet_from_light(&*tracer, &photons, floor, &joint(shared), &kernel);
                     *value = joints.value;
                 }
                 for i in 0..BLOCK {

@@ -71,7 +71,7 @@ impl Joints {
     }
 
     /// The vertices that the camera subpaths meet from the floor points in directions of two uniforms, connected to the light.
-    pub(super) fn from_camera(
+    pub(super) fn meet_from_camera(
         &mut self,
         tracer: &dyn Tracer,
         [x, y]: [&Lanes; 2],
@@ -85,7 +85,7 @@ impl Joints {
     }
 
     /// The vertices that the light subpaths meet, connected to the floor points.
-    pub(super) fn from_light(
+    pub(super) fn meet_from_light(
         &mut self,
         tracer: &dyn Tracer,
         photons: &Rays,
@@ -167,7 +167,7 @@ fn weigh(
     joint: &Joint,
     sample: &mut Lanes,
 ) {
-    for i in 0..BLOCK {
+    for (i, sample) in sample.iter_mut().enumerate() {
         let direction = rays.direction.get(i);
         let square = direction.dot(direction);
         let distance = vertices.t[i] * vertices.t[i] * square;
@@ -190,7 +190,7 @@ fn weigh(
             Side::Light => (light, joint.share(side, light, weighed)),
         };
         let counts = (vertices.weight[i] > 0.0) & (links.irradiance[i] > 0.0);
-        sample[i] = if counts { integrand / own * share } else { 0.0 };
+        *sample = if counts { integrand / own * share } else { 0.0 };
     }
 }
 

@@ -252,8 +252,8 @@ impl Learner for PixelRun<'_> {
         let bsdf = traced.tracer.outline().floor.bsdf;
         let scale = bsdf * film.paths as f64 / traced.tracer.outline().camera.pixels();
         for (k, source) in sources.iter().enumerate() {
-            for through in 0..2 {
-                if let Some(layer) = layers[source.chain][through] {
+            for (through, layer) in layers[source.chain].iter().enumerate() {
+                if let Some(layer) = *layer {
                     let class = traced.classes[source.chain][through];
                     let scale = scale * class.map_or(0.0, |c| defect.class_scale(c));
                     for (value, pixel) in film.layers[layer].iter_mut().zip(&self.pixels) {

@@ -99,7 +99,7 @@ pub fn close_up(entry: &Entry, [x, y]: [f64; 2], height: f64, pixels: u32) -> En
     camera.position = [x, y, height];
     camera.look_at = [x, y, 0.0];
     camera.up = [0.0, 1.0, 0.0];
-    camera.field_of_view_degrees = (2.0 * (1e-3 / height).atan()).to_degrees();
+    camera.field_of_view_degrees = (2.0 * libm::atan(1e-3 / height)).to_degrees();
     (camera.width, camera.height) = (pixels, pixels);
     entry
 }
