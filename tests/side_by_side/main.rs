@@ -9,7 +9,7 @@ mod bench;
 mod every_vertex;
 mod manifold;
 mod minimal;
-#[allow(missing_docs, dead_code)]
+#[allow(dead_code)]
 #[path = "../../examples/minimal_regularized_pt.rs"]
 mod minimal_regularized_pt;
 
