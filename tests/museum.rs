@@ -291,10 +291,10 @@ fn blenders_rule_tolerates_four_steps_and_a_per_cent_of_the_pixels() {
     assert!(blender(&with(10, f64::NAN), &reference));
 }
 
-/// All names of methods are tried by some exhibit.
+/// All names of methods are tried by some exhibit, but that of the one that `verify` does not judge: its faults are for tests of its own.
 #[test]
 fn every_method_has_faults() {
-    for integrator in integrators() {
+    for integrator in integrators().iter().filter(|i| i.name() != "appm") {
         let tried = all()
             .flat_map(|e| e.stands)
             .any(|s| s.integrator == integrator.name());

@@ -298,7 +298,10 @@ impl PreparedVcm {
     /// η of a class.
     fn eta(&self, class: Option<PathClass>, radius: f64) -> f64 {
         match class {
-            Some(class) if self.settings.merging.merges(class) => PI * radius * radius * MAP as f64,
+            // Without a radius nothing is merged, and connections are alone.
+            Some(class) if self.settings.merging.merges(class) && radius.is_finite() => {
+                PI * radius * radius * MAP as f64
+            }
             _ => 0.0,
         }
     }
