@@ -245,7 +245,7 @@ mod tests {
     }
 
     /// Every technique alone, unweighted, has the mean of the others: their densities are those of what they draw. LDDE
-    /// and LDDDE, 800 000 paths each: within 6 standard errors of the mean over the techniques (2e-9 each); it would catch 2 %.
+    /// and LDDDE, 800 000 paths each: within 6 standard errors of the one that knows it best (2e-9 each); it would catch 2 %.
     #[test]
     fn every_technique_alone_has_the_same_mean() {
         let walks = walks(Heuristic::Balance);
@@ -292,11 +292,12 @@ mod tests {
                     (mean, f64::sqrt((square / n - mean * mean) / n))
                 })
                 .collect();
-            let mean = figures.iter().map(|f| f.0).sum::<f64>() / figures.len() as f64;
+            let best = figures.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+            let (mean, sure) = best.copied().unwrap_or_default();
             for (value, error) in &figures {
                 println!("{}: {:.4} ± {:.4}", k + 1, value / mean, error / mean);
                 assert!(
-                    (value - mean).abs() < 6.0 * error + 1e-12 * mean,
+                    (value - mean).abs() < 6.0 * (error + sure) + 1e-12 * mean,
                     "{k} {figures:?}"
                 );
                 assert!(6.0 * error < 0.02 * mean, "{k}: {error} of {mean}");

@@ -194,7 +194,7 @@ fn without_truth(entry: &Entry, integrator: &dyn Integrator, plan: &Plan) -> Opt
         })
 }
 
-/// Marks a covering subset, dear pairs last. Each integrator takes entries with a class that it regularizes first, then those with
+/// Marks a covering subset without dear pairs. Each integrator takes entries with a class that it regularizes first, then those with
 /// more classes, of which three are as good as many; then entries that still lack integrators take the first that claim anything.
 /// Ties go to the first. Pairs that claim nothing cost nothing and stay.
 fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
@@ -206,13 +206,9 @@ fn covering(pairs: &[Pair], scenes: usize, integrators: usize) -> Vec<bool> {
                  worth: &dyn Fn(usize) -> (bool, usize),
                  keep: &mut Vec<bool>| {
         let mut candidates: Vec<usize> = (0..pairs.len())
-            .filter(|&k| classes[k] > 0 && belongs(&pairs[k]))
+            .filter(|&k| classes[k] > 0 && belongs(&pairs[k]) && !pairs[k].is_dear())
             .collect();
-        candidates.sort_by_key(|&k| {
-            let p = &pairs[k];
-            let cost = (p.is_dear(), p.truth);
-            (!keep[k], cost, core::cmp::Reverse(worth(k)))
-        });
+        candidates.sort_by_key(|&k| (!keep[k], core::cmp::Reverse(worth(k))));
         for k in candidates.into_iter().take(COVER) {
             keep[k] = true;
         }
