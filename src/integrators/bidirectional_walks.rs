@@ -245,13 +245,13 @@ mod tests {
     }
 
     /// Every technique alone, unweighted, has the mean of the others: their densities are those of what they draw. LDDE
-    /// and LDDDE, 800 000 paths each: within 6 standard errors of the one that knows it best (2e-9 each); it would catch 2 %.
+    /// and LDDDE, 3 000 000 paths each: within 6 standard errors of the one that knows it best (2e-9 each); it would catch 2 %.
     #[test]
     fn every_technique_alone_has_the_same_mean() {
         let walks = walks(Heuristic::Balance);
         let camera = &walks.scene.camera;
         let (columns, rows) = camera.size();
-        let n = 800_000_usize;
+        let n = 3_000_000_usize;
         let mut sums = [[[0.0; 2]; VERTICES + 1]; 3];
         let (mut column, mut row, mut u, mut v) = (zeros(), zeros(), zeros(), zeros());
         let mut turns = [[[zeros(); 2]; 3], [[zeros(); 2]; 3]];
