@@ -289,7 +289,9 @@ mod tests {
                 .iter()
                 .map(|[sum, square]| {
                     let mean = sum / n;
-                    (mean, f64::sqrt((square / n - mean * mean) / n))
+                    // Rounding can make a variance that is next to nothing negative.
+                    let variance = (square / n - mean * mean).max(0.0);
+                    (mean, f64::sqrt(variance / n) + 1e-9 * mean)
                 })
                 .collect();
             let best = figures.iter().min_by(|a, b| a.1.total_cmp(&b.1));
