@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use nephroid_analytic::bandwidth::entry::Estimator;
 use nephroid_analytic::bandwidth::frame::FrameExpectation;
-use nephroid_analytic::bandwidth::tile::{Sampled, Tile, refine, together};
+use nephroid_analytic::bandwidth::tile::{self, Sampled, Tile, refine, together};
 use nephroid_analytic::bandwidth::{Convention, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
@@ -86,17 +86,7 @@ pub fn region(
         high: [0, 1].map(|k| t.high[k] + offset[k]),
     };
     let start = tiles(size, MOST_LEVELS).into_iter().map(moved).collect();
-    let mut sum = Moments::default();
-    let mut errors = Vec::new();
-    for s in cover(frame, class, start, tolerance) {
-        let value = s.sum();
-        sum.mean.value += value[0];
-        sum.second_moment.value += value[1];
-        errors.push(s.error);
-    }
-    let error = [0, 1].map(|k| together(errors.iter().map(|e| e[k])));
-    (sum.mean.error, sum.second_moment.error) = (error[0], error[1]);
-    sum
+    tile::total(&cover(frame, class, start, tolerance))
 }
 
 /// Samples a class on tiles, and on parts of them until the sum over all is known to the tolerances; an infinite one asks for nothing.

@@ -18,7 +18,7 @@ use super::entry::{EntryExpectation, Estimator};
 use super::eye::Eye;
 use super::light::unknown;
 use super::quadrature::Pair;
-use super::tile::{Sampled, Tile, refine, together};
+use super::tile::{Sampled, Tile, refine, total};
 use crate::class::PathClass;
 use crate::scene::{Entry, InvalidParameter};
 
@@ -118,17 +118,7 @@ impl FrameExpectation {
         tolerance: f64,
         floor: [f64; 2],
     ) -> Moments {
-        let mut sum = Moments::default();
-        let mut errors = Vec::new();
-        for s in self.cover(class, columns, rows, tolerance, floor) {
-            let value = s.sum();
-            sum.mean.value += value[0];
-            sum.second_moment.value += value[1];
-            errors.push(s.error);
-        }
-        let error = [0, 1].map(|k| together(errors.iter().map(|e| e[k])));
-        (sum.mean.error, sum.second_moment.error) = (error[0], error[1]);
-        sum
+        total(&self.cover(class, columns, rows, tolerance, floor))
     }
 
     /// Moments of the radiance [W m⁻² sr⁻¹] of a class for each pixel of a rectangle, row by row, to a `tolerance` of all of

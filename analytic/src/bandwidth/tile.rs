@@ -16,6 +16,7 @@
 
 use libm::{ceil, floor, sqrt};
 
+use super::Moments;
 use super::quadrature::Pair;
 use crate::pixel::rule::Rule;
 
@@ -406,6 +407,19 @@ pub fn together(errors: impl IntoIterator<Item = f64>) -> f64 {
     }
     // Of one or a few the sum of sizes is the better bound.
     (DEVIATIONS * sqrt(squares) + COHERENT * sum).min(sum)
+}
+
+/// Moments summed over tiles, with the error of the sum.
+pub fn total(tiles: &[Sampled]) -> Moments {
+    let mut sum = Moments::default();
+    for s in tiles {
+        let value = s.sum();
+        sum.mean.value += value[0];
+        sum.second_moment.value += value[1];
+    }
+    let error = [0, 1].map(|k| together(tiles.iter().map(|s| s.error[k])));
+    (sum.mean.error, sum.second_moment.error) = (error[0], error[1]);
+    sum
 }
 
 /// Splits tiles until the sum of their errors is small: `goal` tells from the sums of all what is allowed, `sample` samples several
