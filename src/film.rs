@@ -21,6 +21,29 @@ pub struct Film {
     pub nonzero: Vec<u64>,
     /// Paths drawn, misses included.
     pub paths: u64,
+    /// Layers that nobody will read: an integrator may leave them empty, and does so where that saves work.
+    unread: Layers,
+}
+
+/// A set of a film's layers, by their positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layers(u64);
+
+impl Layers {
+    /// Most layers of a film.
+    const MOST: usize = u64::BITS as usize;
+
+    /// Whether a layer is among them.
+    pub fn contain(self, layer: usize) -> bool {
+        layer < Layers::MOST && self.0 >> layer & 1 == 1
+    }
+}
+
+impl FromIterator<usize> for Layers {
+    fn from_iter<T: IntoIterator<Item = usize>>(layers: T) -> Self {
+        let layers = layers.into_iter().filter(|&l| l < Layers::MOST);
+        Layers(layers.fold(0, |set, layer| set | 1 << layer))
+    }
 }
 
 impl Film {
@@ -34,7 +57,13 @@ impl Film {
             layers: vec![vec![0.0; pixels]; classes.len()],
             nonzero: vec![0; classes.len()],
             paths: 0,
+            unread: Layers::default(),
         }
+    }
+
+    /// The same film, of which some layers need not be filled.
+    pub fn without(self, unread: Layers) -> Self {
+        Film { unread, ..self }
     }
 
     /// Number of pixels.
@@ -62,9 +91,20 @@ impl Film {
         self.paths += other.paths;
     }
 
-    /// The index of a class's layer.
+    /// The index of a class's layer; `None` where there is none, or nobody will read it.
     pub fn layer_of(&self, class: PathClass) -> Option<usize> {
+        let layer = self.position_of(class)?;
+        (!self.unread.contain(layer)).then_some(layer)
+    }
+
+    /// The index of a class's layer, whether it is read or not: for methods in which one class decides about another.
+    pub fn position_of(&self, class: PathClass) -> Option<usize> {
         self.classes.iter().position(|&c| c == class)
+    }
+
+    /// Whether any of these classes has a layer that is read.
+    pub fn reads(&self, classes: &[PathClass]) -> bool {
+        classes.iter().any(|&c| self.layer_of(c).is_some())
     }
 
     /// Mean radiance of each class over the whole image [W m⁻² sr⁻¹].

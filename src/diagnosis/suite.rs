@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::integrators::{ClassPlan, Kernel, Plan, Treatment};
 use crate::judge::finding::State;
 use crate::regions::Regions;
+use crate::verify::effort::Effort;
 use crate::verify::expected::Truths;
 use crate::verify::replicates::{Seeds, Shape};
 use crate::verify::run::{Request, first_shape};
@@ -77,7 +78,13 @@ pub fn annotate(
         let method = request.integrators[integrator].as_ref();
         let pair = Pair::new(scene, entry, integrator, method);
         let (width, height) = (entry.camera.width, entry.camera.height);
-        let shape = first_shape(method, &pair.plan, request.bandwidth, entry);
+        let shape = first_shape(
+            method,
+            &pair.plan,
+            request.bandwidth,
+            entry,
+            Effort::Standard,
+        );
         let treatment = pair.plan[layer].treatment;
         let means = match (treatment, verdict.truth) {
             (Treatment::Regularized(_), Some(truth)) => {

@@ -18,6 +18,8 @@ pub struct CupWall {
     height: f64,
     /// The wall covers |φ| ≤ this [rad]; π where it is closed.
     half_arc: f64,
+    /// It stands where x is at least this [m], as far as a point on the circle can tell.
+    x_min: f64,
     reflectance: f64,
     classes: &'static [PathClass],
     /// Direction of parallel light that comes in over the rim of a closed wall.
@@ -31,6 +33,7 @@ impl CupWall {
             radius: wall.radius,
             height: wall.height,
             half_arc: wall.half_arc_degrees.to_radians(),
+            x_min: first_x(wall.radius, wall.half_arc_degrees.to_radians()),
             reflectance,
             classes,
             travel: None,
@@ -41,6 +44,7 @@ impl CupWall {
     pub fn in_beam(self, travel: DVec3) -> Self {
         CupWall {
             half_arc: core::f64::consts::PI,
+            x_min: f64::NEG_INFINITY,
             travel: Some(travel),
             ..self
         }
@@ -93,8 +97,16 @@ impl CupWall {
     /// The point ahead at a ray parameter, if the wall stands there.
     fn on_wall(&self, o: DVec3, d: DVec3, t: f64) -> Option<DVec3> {
         let p = o + d * t;
-        let on_arc = f64::abs(libm::atan2(p.y, p.x)) <= self.half_arc;
-        ((t > 0.0) & on_arc & (p.z >= 0.0) & (p.z <= self.height)).then_some(p)
+        ((t > 0.0) & (p.x >= self.x_min) & (p.z >= 0.0) & (p.z <= self.height)).then_some(p)
+    }
+}
+
+/// The least x of an arc; none where it is the whole circle, whose points may lie outside of it within rounding.
+fn first_x(radius: f64, half_arc: f64) -> f64 {
+    if half_arc < core::f64::consts::PI {
+        radius * libm::cos(half_arc)
+    } else {
+        f64::NEG_INFINITY
     }
 }
 

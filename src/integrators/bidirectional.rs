@@ -140,7 +140,7 @@ impl Prepared for Bidirectional {
         for first in (0..paths).step_by(BLOCK) {
             let live = (paths - first).min(BLOCK as u64) as usize;
             self.eye_subpaths(&stream, first, live, &mut block);
-            if self.has_direct {
+            if self.has_direct && film.reads(&DIRECT) {
                 self.next_event(&mut block, film);
             }
             uniforms(
@@ -154,11 +154,12 @@ impl Prepared for Bidirectional {
             self.defect.numbers(Dimension::Emission, u, v);
             for (index, beam) in self.beams.iter().enumerate() {
                 beam.emission.rays(&block.u, &block.v, &mut block.photons);
-                if beam.classes.iter().any(Option::is_some) {
+                let is_read = |class: &PathClass| film.layer_of(*class).is_some();
+                if beam.classes.iter().flatten().any(is_read) {
                     self.light_tracing(index, beam, live, &mut block, film);
                 }
             }
-            if self.mollified.contains(&true) {
+            if self.mollified.contains(&true) && film.reads(&CAUSTIC) {
                 self.mollified(&stream, first, &kernel, &mut block, film);
             }
         }

@@ -53,6 +53,12 @@ impl Traced {
         let layer = |c: Option<PathClass>| c.and_then(|c| film.layer_of(c));
         self.classes.iter().map(|c| c.map(layer)).collect()
     }
+
+    /// The same, whether they are read or not.
+    pub(super) fn all_layers(&self, film: &Film) -> Vec<[Option<usize>; 2]> {
+        let layer = |c: Option<PathClass>| c.and_then(|c| film.position_of(c));
+        self.classes.iter().map(|c| c.map(layer)).collect()
+    }
 }
 
 /// Where a block of camera paths is.

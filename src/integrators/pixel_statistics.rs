@@ -188,7 +188,8 @@ impl Learner for PixelRun<'_> {
             density,
         } = self.scene;
         film.paths += paths;
-        let layers = traced.layers(film);
+        // A pixel has one radius for all its classes.
+        let layers = traced.all_layers(film);
         // One sum for each source, seen straight and through the surface.
         let slots = 2 * sources.len();
         if self.pixels.is_empty() {

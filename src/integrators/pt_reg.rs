@@ -221,11 +221,11 @@ fn trace<L: Light, S: Specular, D: Deviation>(
         v,
     } = block;
     paths.draw(scene, defect, stream, first, live);
-    if !S::SEPARATES {
+    if !S::SEPARATES && film.reads(&DIRECT) {
         paths.next_event(scene, defect, value);
         paths.splat(film, DIRECT, value);
     }
-    if S::EXISTS {
+    if S::EXISTS && film.reads(&CAUSTIC) {
         stream.pairs(first, Dimension::Direction, u, v);
         defect.numbers(Dimension::Direction, u, v);
         connect(scene, defect, paths, u, v, value, squared_chord);

@@ -78,7 +78,13 @@ impl Hall {
         let sound = by_name(stand.integrator, &Settings::default())?;
         let (width, height) = (entry.camera.width, entry.camera.height);
         let pair = Pair::new(scene, &entry, 0, sound.as_ref());
-        let shape = first_shape(sound.as_ref(), &pair.plan, stand.bandwidth, &entry);
+        let shape = first_shape(
+            sound.as_ref(),
+            &pair.plan,
+            stand.bandwidth,
+            &entry,
+            Effort::Standard,
+        );
         let whole = || Regions::quadtree(width, height);
         let regions = if sound.has_infinite_variance_at_folds() {
             Kept::of(&entry, None).map_or_else(whole, |kept| kept.regions)
@@ -224,7 +230,7 @@ impl Hall {
 }
 
 fn paths(evidence: &Evidence) -> u64 {
-    u64::from(evidence.replicates) * evidence.size.shape.paths()
+    evidence.paths
 }
 
 /// Everything about a stand but the fault.

@@ -3,8 +3,8 @@
 use nephroid_analytic::camera::Bounded;
 
 use super::expected::Expected;
-use super::replicates::{Canvas, FINAL, Seeds, run as run_replicates};
-use super::sizing::{self, Check, Demand, PATHS_BEFORE_MISSING, Size};
+use super::replicates::{Canvas, FINAL, Seeds, Shape, run_without};
+use super::sizing::{self, Check, Demand, Group, PATHS_BEFORE_MISSING, Size, Source};
 use crate::integrators::Prepared;
 use crate::judge::betting::Bet;
 use crate::judge::evidence::{Invalid, Replicate, Sample, Tally};
@@ -14,8 +14,6 @@ use crate::judge::hypotheses::dependence_p;
 use crate::judge::spending::{Look, looks};
 use crate::judge::verdict::{Case, Part, Spent, decide_at};
 use crate::regions::Regions;
-
-use super::replicates::Shape;
 
 /// Replicates that are held in memory at a time.
 const AT_A_TIME: u32 = 256;
@@ -34,6 +32,7 @@ struct Subject {
     bet: Bet,
     spent: Spent,
     finding: Option<Finding>,
+    drawn: Drawn,
 }
 
 /// A finding about one check.
@@ -48,16 +47,38 @@ pub struct Judged {
     pub finding: Finding,
     /// Tail index of the largest pixels of the replicates, where there are enough.
     pub tail: Option<TailIndex>,
+    /// What was drawn for it.
+    pub drawn: Drawn,
+}
+
+/// How much was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drawn {
+    /// Replicates.
+    pub replicates: u32,
+    /// Paths of each.
+    pub paths_per_replicate: u64,
+    /// Looks that were taken.
+    pub looks: u32,
+}
+
+impl Drawn {
+    /// Paths in all.
+    pub fn paths(&self) -> u64 {
+        u64::from(self.replicates) * self.paths_per_replicate
+    }
 }
 
 /// What a test came to.
 pub struct Evidence {
     /// A finding for every class in order, and then for their sum.
     pub judged: Vec<Judged>,
-    /// What was planned.
+    /// What was planned for the checks that need most.
     pub size: Size,
-    /// Replicates that were drawn.
+    /// Replicates that were drawn for them.
     pub replicates: u32,
+    /// Paths of all replicates.
+    pub paths: u64,
     /// The fewest contributions of a claimed class in any replicate.
     pub fewest_contributions: u64,
     /// Looks that were taken.
@@ -103,58 +124,114 @@ pub fn gather_until(
 ) -> Evidence {
     let mut subjects = subjects(expected);
     let mut layers: Vec<Layer> = vec![Layer::default(); expected.len()];
+    let unplanned = Size {
+        shape: shape.clone(),
+        replicates: 0,
+        most: 0,
+    };
     if subjects.is_empty() {
-        let size = Size {
-            shape,
-            replicates: 0,
-            most: 0,
-        };
         return Evidence {
             judged: in_order(subjects, &layers),
-            size,
+            size: unplanned,
             replicates: 0,
+            paths: 0,
             fewest_contributions: 0,
             looks: 0,
         };
     }
     let prepared = prepare();
-    let prepared = prepared.as_ref();
+    let source = Source {
+        prepared: prepared.as_ref(),
+        canvas,
+        regions,
+        seeds,
+    };
     let checks: Vec<Check> = subjects.iter().map(Subject::check).collect();
-    let size = sizing::plan(prepared, canvas, regions, shape, seeds, &checks, demand);
-    let (mut drawn, mut taken) = (0, 0);
-    for look in looks(u64::from(size.replicates), u64::from(size.most)) {
-        while u64::from(drawn) < look.replicates {
-            let stop = (drawn + AT_A_TIME).min(look.replicates as u32);
-            let shape = &size.shape;
-            for r in run_replicates(prepared, canvas, regions, shape, seeds, FINAL, drawn..stop) {
-                subjects.iter_mut().for_each(|s| s.push(&r));
-                layers
-                    .iter_mut()
-                    .enumerate()
-                    .for_each(|(l, layer)| layer.push(&r, l));
-            }
-            drawn = stop;
-        }
-        taken += 1;
-        for subject in &mut subjects {
-            subject.decide(regions, demand, look, &size);
-        }
-        let suffices = end == End::FirstDifference && subjects.iter().any(Subject::is_different);
-        if suffices || subjects.iter().all(Subject::is_settled) {
+    let groups = sizing::plan(source, shape, &checks, demand);
+    let (mut paths, mut last) = (0, Drawn::default());
+    for group in &groups {
+        last = test(source, group, &mut subjects, &mut layers, end, demand);
+        paths += last.paths();
+        if end == End::FirstDifference && subjects.iter().any(Subject::is_different) {
             break;
         }
     }
-    let fewest = subjects.iter().filter(|s| s.class.is_some());
+    let tested = |s: &&Subject| s.class.is_some() && s.drawn.replicates > 0;
+    let fewest = subjects.iter().filter(tested);
     Evidence {
         fewest_contributions: fewest
             .map(|s| s.tallies[0].sample().fewest_contributions)
             .min()
             .unwrap_or(0),
         judged: in_order(subjects, &layers),
-        size,
-        replicates: drawn,
-        looks: taken,
+        size: groups.last().map_or(unplanned, |g| g.size.clone()),
+        replicates: last.replicates,
+        paths,
+        looks: last.looks,
     }
+}
+
+/// Draws replicates for a group of checks and judges them at each look, until all are decided.
+fn test(
+    source: Source,
+    group: &Group,
+    subjects: &mut [Subject],
+    layers: &mut [Layer],
+    end: End,
+    demand: Demand,
+) -> Drawn {
+    let Source {
+        prepared,
+        canvas,
+        regions,
+        seeds,
+    } = source;
+    let Size { shape, .. } = &group.size;
+    let mut drawn = Drawn {
+        paths_per_replicate: shape.paths(),
+        ..Drawn::default()
+    };
+    let mut members: Vec<&mut Subject> = subjects
+        .iter_mut()
+        .enumerate()
+        .filter_map(|(i, s)| group.checks.contains(&i).then_some(s))
+        .collect();
+    let most = u64::from(group.size.most);
+    for look in looks(u64::from(group.size.replicates), most) {
+        while u64::from(drawn.replicates) < look.replicates {
+            let start = drawn.replicates;
+            let stop = (start + AT_A_TIME).min(look.replicates as u32);
+            let unread = group.unread;
+            for r in run_without(
+                unread,
+                prepared,
+                canvas,
+                regions,
+                shape,
+                seeds,
+                FINAL,
+                start..stop,
+            ) {
+                members.iter_mut().for_each(|s| s.push(&r));
+                for (l, layer) in layers.iter_mut().enumerate() {
+                    if !unread.contain(l) {
+                        layer.push(&r, l, shape.paths());
+                    }
+                }
+            }
+            drawn.replicates = stop;
+        }
+        drawn.looks += 1;
+        for subject in &mut members {
+            subject.decide(regions, demand, look, &group.size);
+            subject.drawn = drawn;
+        }
+        let suffices = end == End::FirstDifference && members.iter().any(|s| s.is_different());
+        if suffices || members.iter().all(|s| s.is_settled()) {
+            break;
+        }
+    }
+    drawn
 }
 
 /// What is kept of every layer, claimed or not.
@@ -163,15 +240,23 @@ struct Layer {
     contributions: u64,
     invalid: Invalid,
     largest: Vec<f64>,
+    drawn: Drawn,
 }
 
 impl Layer {
-    fn push(&mut self, r: &Replicate, layer: usize) {
+    fn push(&mut self, r: &Replicate, layer: usize, paths: u64) {
         self.contributions += r.contributions(layer, 0);
         if self.invalid.first.is_none() {
             self.invalid = r.invalid[layer];
         }
+        // The largest pixels of replicates of one size.
+        if self.drawn.paths_per_replicate != paths {
+            self.largest.clear();
+            self.drawn = Drawn::default();
+        }
         self.largest.push(r.largest[layer]);
+        self.drawn.paths_per_replicate = paths;
+        self.drawn.replicates += 1;
     }
 }
 
@@ -217,6 +302,7 @@ impl Subject {
             bet: Bet::default(),
             spent: Spent::default(),
             finding: None,
+            drawn: Drawn::default(),
         }
     }
 
@@ -310,6 +396,7 @@ fn in_order(subjects: Vec<Subject>, layers: &[Layer]) -> Vec<Judged> {
             class: s.class,
             truth: Some(s.expected.first()),
             mean: Some(sample.mean),
+            drawn: s.drawn,
             finding: s
                 .finding
                 .unwrap_or_else(|| Finding::bare(State::Undecided, "nothing was drawn")),
@@ -349,5 +436,6 @@ fn not_sampled(layer: &Layer, position: usize) -> Judged {
         mean: None,
         finding,
         tail: None,
+        drawn: layer.drawn,
     }
 }

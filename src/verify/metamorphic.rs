@@ -183,7 +183,13 @@ fn unchanged(
 ) -> Result<Vec<Option<Expected>>, Error> {
     let entry = &request.scenes[pair.scene].entry;
     let integrator = request.integrators[pair.integrator].as_ref();
-    let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
+    let shape = first_shape(
+        integrator,
+        &pair.plan,
+        request.bandwidth,
+        entry,
+        request.effort,
+    );
     // The regions of the unchanged run, whose truth serves that as well.
     let regions =
         part.unwrap_or_else(|| Regions::quadtree(entry.camera.width, entry.camera.height));
@@ -243,7 +249,13 @@ impl Varied {
         let started = Instant::now();
         let integrator = request.integrators[pair.integrator].as_ref();
         let original = &request.scenes[pair.scene].entry;
-        let mut shape = first_shape(integrator, &pair.plan, request.bandwidth, original);
+        let mut shape = first_shape(
+            integrator,
+            &pair.plan,
+            request.bandwidth,
+            original,
+            request.effort,
+        );
         let part =
             (self.change == Change::Scene(Variation::Cropped)).then(|| middle(&original.camera));
         let expected = unchanged(request, pair, part, truths)?;

@@ -7,7 +7,7 @@
 use nephroid_analytic::class::PathClass;
 use rayon::prelude::*;
 
-use crate::film::Film;
+use crate::film::{Film, Layers};
 use crate::integrators::{Prepared, Run};
 use crate::judge::evidence::Replicate;
 use crate::regions::Regions;
@@ -79,7 +79,24 @@ pub fn run(
     phase: u32,
     replicates: core::ops::Range<u32>,
 ) -> Vec<Replicate> {
-    let film = || Film::new(canvas.width, canvas.height, canvas.classes);
+    let unread = Layers::default();
+    run_without(
+        unread, prepared, canvas, regions, shape, seeds, phase, replicates,
+    )
+}
+
+/// The same, of which some layers will not be read: the others have the same bits.
+pub fn run_without(
+    unread: Layers,
+    prepared: &dyn Prepared,
+    canvas: Canvas,
+    regions: &Regions,
+    shape: &Shape,
+    seeds: Seeds,
+    phase: u32,
+    replicates: core::ops::Range<u32>,
+) -> Vec<Replicate> {
+    let film = || Film::new(canvas.width, canvas.height, canvas.classes).without(unread);
     replicates
         .into_par_iter()
         .map_init(film, |film, k| {

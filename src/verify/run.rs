@@ -30,6 +30,8 @@ const PATHS_PER_PIXEL: u64 = 2;
 const FEWEST_PATHS: u64 = 1 << 15;
 /// Replicates that are judged as a whole are so many times shorter.
 const PART_WITHOUT_TILES: u64 = 4;
+/// Replicates are so many times shorter at the margin of the effort `quick`.
+const PART_WHEN_QUICK: u64 = 4;
 
 /// What to verify.
 pub struct Request {
@@ -182,7 +184,13 @@ fn run_pair(
     let subject = &request.scenes[pair.scene];
     let integrator = request.integrators[pair.integrator].as_ref();
     let entry = &subject.entry;
-    let shape = first_shape(integrator, &pair.plan, request.bandwidth, entry);
+    let shape = first_shape(
+        integrator,
+        &pair.plan,
+        request.bandwidth,
+        entry,
+        request.effort,
+    );
     let mut expected = |regions: &Regions| {
         let kernel = request.truth_kernel();
         let bandwidths = &shape.bandwidths;
@@ -271,8 +279,6 @@ impl Job<'_> {
             Some(_) => MASK,
             None => WHOLE_IMAGE,
         };
-        let per_replicate = evidence.size.shape.paths();
-        let replicates = evidence.replicates;
         let verdict = |judged: Judged| {
             let treatment = judged.class.map(|c| self.plan[c].treatment);
             let regularized = match treatment {
@@ -287,7 +293,10 @@ impl Job<'_> {
                 integrator: integrator.name().to_owned(),
                 class: class.unwrap_or_else(|| ALL_CLASSES.to_owned()),
                 region: place.unwrap_or_else(|| first.to_owned()),
-                paths_needed: judged.finding.replicates_needed.map(|n| n * per_replicate),
+                paths_needed: judged
+                    .finding
+                    .replicates_needed
+                    .map(|n| n * judged.drawn.paths_per_replicate),
                 finding: judged.finding,
                 truth: judged.truth,
                 mean: judged.mean,
@@ -297,9 +306,9 @@ impl Job<'_> {
                 tail: judged.tail,
                 excluded: self.excluded,
                 looks_like: None,
-                replicates,
-                looks: evidence.looks,
-                paths: u64::from(replicates) * per_replicate,
+                replicates: judged.drawn.replicates,
+                looks: judged.drawn.looks,
+                paths: judged.drawn.paths(),
                 seed: request.seed,
                 seconds,
                 command: command.clone(),
@@ -313,12 +322,14 @@ fn is_regularized(treatment: Treatment) -> bool {
     matches!(treatment, Treatment::Regularized(_))
 }
 
-/// The replicates that pilots start with.
+/// The replicates that pilots start with. A wide margin needs few paths in all, but a test never takes fewer than 256
+/// replicates: they are shorter then, and fewer of the small tiles can be judged.
 pub(crate) fn first_shape(
     integrator: &dyn Integrator,
     plan: &Plan,
     bandwidth: f64,
     entry: &Entry,
+    effort: Effort,
 ) -> Shape {
     let pixels = u64::from(entry.camera.width) * u64::from(entry.camera.height);
     let schedule = integrator.schedule(bandwidth);
@@ -330,10 +341,10 @@ pub(crate) fn first_shape(
     };
     let paths = (PATHS_PER_PIXEL * pixels).max(FEWEST_PATHS);
     // Without tiles a replicate needs fewer paths, which such methods take their time for.
-    let paths = if integrator.has_infinite_variance_at_folds() {
-        paths / PART_WITHOUT_TILES
-    } else {
-        paths
+    let paths = match effort {
+        _ if integrator.has_infinite_variance_at_folds() => paths / PART_WITHOUT_TILES,
+        Effort::Quick => paths / PART_WHEN_QUICK,
+        Effort::Standard | Effort::Thorough => paths,
     };
     Shape {
         bandwidths: (0..iterations).map(|i| schedule.bandwidth(i)).collect(),

@@ -3,7 +3,8 @@
 
 use nephroid_analytic::camera::Bounded;
 
-use super::replicates::{Canvas, Seeds, Shape, run};
+use super::replicates::{Canvas, Seeds, Shape, run_without};
+use crate::film::Layers;
 use crate::integrators::Prepared;
 use crate::judge::evidence::{FEWEST_CONTRIBUTIONS, FEWEST_REPLICATES, Replicate, Sample};
 use crate::judge::hypotheses::Levels;
@@ -18,7 +19,9 @@ const VARIANCE_ALLOWANCE: f64 = 1.2;
 const SHARE_PLANNED: f64 = 0.25;
 /// A replicate is made large enough for this many contributions on average, so that none of the final test falls below
 /// [`FEWEST_CONTRIBUTIONS`].
-const CONTRIBUTIONS_WANTED: u64 = 2 * FEWEST_CONTRIBUTIONS;
+const CONTRIBUTIONS_WANTED: u64 = FEWEST_CONTRIBUTIONS * 3 / 2;
+/// A further pilot's replicates are so many times shorter than those of the final test would be: its variance needs no more.
+const SHORTER_PILOT: u64 = 4;
 /// The fewest contributions in any replicate of the pilot that are taken as a sign of this.
 const CONTRIBUTIONS_SAFE: u64 = FEWEST_CONTRIBUTIONS * 5 / 4;
 /// Each pilot makes replicates larger by a factor of up to 1024.
@@ -63,24 +66,84 @@ pub struct Size {
     pub most: u32,
 }
 
-/// Runs pilots until they have seen enough, makes replicates large enough for normal means, then plans for the hardest
-/// check.
-pub fn plan(
-    prepared: &dyn Prepared,
-    canvas: Canvas,
-    regions: &Regions,
-    first: Shape,
-    seeds: Seeds,
+/// Checks that are tested with the same replicates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Their positions.
+    pub checks: Vec<usize>,
+    /// Sample size of their test.
+    pub size: Size,
+    /// Layers that none of them reads.
+    pub unread: Layers,
+}
+
+/// What pilots are drawn from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// The integrator on its scene.
+    pub prepared: &'a dyn Prepared,
+    /// Where it draws.
+    pub canvas: Canvas,
+    /// The areas of the image.
+    pub regions: &'a Regions,
+    /// Where seeds come from.
+    pub seeds: Seeds,
+}
+
+/// Plans the tests of the checks of a run. A first pilot tells which of them need larger replicates; these are tested by
+/// themselves, so that the paths of rare classes are not spent on the others as well.
+pub fn plan(source: Source, first: Shape, checks: &[Check], demand: Demand) -> Vec<Group> {
+    let pilot = source.pilot(1, &first, Layers::default());
+    let grows = |i: &usize| growth(&pilot, &checks[*i..=*i], &first, demand) > 1;
+    let (rare, common): (Vec<_>, Vec<_>) = (0..checks.len()).partition(grows);
+    let mut groups = vec![common, rare];
+    if groups.iter().any(Vec::is_empty) {
+        groups = vec![groups.concat()];
+    }
+    let size = |members: Vec<usize>| {
+        let own: Vec<Check> = members.iter().map(|&i| checks[i].clone()).collect();
+        let others = checks.iter().flat_map(|c| c.layers.iter().copied());
+        let is_read = |layer: &usize| own.iter().any(|c| c.layers.contains(layer));
+        let unread = others.filter(|l| !is_read(l)).collect();
+        Group {
+            size: plan_together(source, pilot.clone(), first.clone(), unread, &own, demand),
+            checks: members,
+            unread,
+        }
+    };
+    groups.into_iter().map(size).collect()
+}
+
+impl Source<'_> {
+    fn pilot(&self, phase: u32, shape: &Shape, unread: Layers) -> Vec<Replicate> {
+        run_without(
+            unread,
+            self.prepared,
+            self.canvas,
+            &self.regions.first(),
+            shape,
+            self.seeds,
+            phase,
+            0..PILOT_REPLICATES,
+        )
+    }
+}
+
+/// Runs pilots, of which there is one, until they have seen enough, makes replicates large enough for normal means, then
+/// plans for the hardest check.
+fn plan_together(
+    source: Source,
+    mut pilot: Vec<Replicate>,
+    mut shape: Shape,
+    unread: Layers,
     checks: &[Check],
     demand: Demand,
 ) -> Size {
-    let mut shape = first;
-    let mut pilot = Vec::new();
     let mut factor = 1;
-    let regions = regions.first();
     for phase in 1.. {
-        let replicates = 0..PILOT_REPLICATES;
-        pilot = run(prepared, canvas, &regions, &shape, seeds, phase, replicates);
+        if phase > 1 {
+            pilot = source.pilot(phase, &shape, unread);
+        }
         factor = growth(&pilot, checks, &shape, demand);
         let mut seen = checks
             .iter()
@@ -90,7 +153,7 @@ pub fn plan(
         if factor <= 1 || enough || phase == MOST_PILOTS {
             break;
         }
-        shape.paths_per_iteration *= factor;
+        shape.paths_per_iteration *= factor.div_ceil(SHORTER_PILOT);
     }
     shape.paths_per_iteration *= factor;
     let most = (demand.most_paths / shape.paths()).clamp(FEWEST_REPLICATES as u64, MOST_REPLICATES);
@@ -131,17 +194,11 @@ fn growth(pilot: &[Replicate], checks: &[Check], shape: &Shape, demand: Demand) 
         if s.fewest_contributions >= CONTRIBUTIONS_SAFE {
             return 1;
         }
-        let mean = (s.contributions / replicates)
-            .max(s.fewest_contributions)
-            .max(1);
-        CONTRIBUTIONS_WANTED
-            .div_ceil(mean)
-            .max(2)
-            .next_power_of_two()
+        // Wanted over the mean.
+        let wanted = CONTRIBUTIONS_WANTED * replicates;
+        wanted.div_ceil(s.contributions).max(2)
     };
     let for_seen = seen.map(wanted).max().unwrap_or(1);
-    let most_for_seen = (demand.most_paths / (FEWEST_PLANNED * shape.paths()))
-        .max(1)
-        .next_power_of_two();
+    let most_for_seen = (demand.most_paths / (FEWEST_PLANNED * shape.paths())).max(1);
     for_seen.min(most_for_seen).min(1024)
 }
