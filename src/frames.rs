@@ -12,6 +12,7 @@ use nephroid_analytic::scene::{Entry, InvalidParameter};
 use rayon::prelude::*;
 
 use crate::regions::{Area, MOST_LEVELS, Regions, SMALLEST_TILE};
+use crate::scattered;
 
 /// Tiles sampled at most for one class.
 const MOST: usize = 20_000;
@@ -60,6 +61,9 @@ pub fn area_moments(
         .collect();
     let used = |tile: &Tile| overlaps(tile, &areas[0], frame.size().0);
     let of_class = |class: usize| -> Vec<Moments> {
+        if frame.scatters(class) {
+            return scattered::areas(&frame, class, &areas, tolerance);
+        }
         let start = tiles(frame.size(), MOST_LEVELS).into_iter().filter(used);
         let found = cover(&frame, class, start.collect(), tolerance);
         (areas.iter())

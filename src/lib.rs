@@ -25,6 +25,7 @@ pub mod png_output;
 pub mod rates;
 pub mod regions;
 pub mod report;
+mod scattered;
 pub mod stability;
 pub mod stream;
 mod svg;

@@ -2,6 +2,7 @@
 //! polar coordinates, closed forms averaged over a disc, small bandwidths, units, and the error bounds themselves.
 
 mod charts;
+mod scattered;
 
 use std::f64::consts::PI;
 use std::fs;

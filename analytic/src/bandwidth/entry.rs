@@ -168,6 +168,18 @@ impl EntryExpectation {
             .collect()
     }
 
+    pub(super) fn light(&self, position: usize) -> &Class {
+        &self.classes[position]
+    }
+
+    pub(super) fn receiver(&self) -> Receiver {
+        self.receiver
+    }
+
+    pub(super) fn estimator(&self) -> (Technique, Kernel, &[f64]) {
+        (self.technique, self.kernel, &self.bandwidths)
+    }
+
     /// The moments of one class, relative to a floor where they are smaller than that.
     pub(super) fn of_class(
         &self,

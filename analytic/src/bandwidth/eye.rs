@@ -15,7 +15,7 @@ use crate::vector::{Vec3, vec3};
 
 /// How the eye sees the floor.
 #[derive(Clone, Copy, Debug)]
-enum Way {
+pub(super) enum Way {
     /// Straight, past what stands on the floor.
     Direct(Option<Standing>),
     /// Through a flat surface at a height, into this index.
@@ -26,14 +26,14 @@ enum Way {
 
 /// A mirror in the picture.
 #[derive(Clone, Copy, Debug)]
-enum Standing {
+pub(super) enum Standing {
     Plane(Rectangle),
     Wall(CylinderCup<f64>),
 }
 
 /// A rectangle with unit vectors.
 #[derive(Clone, Copy, Debug)]
-struct Rectangle {
+pub(super) struct Rectangle {
     center: Vec3<f64>,
     normal: Vec3<f64>,
     axes: [(Vec3<f64>, f64); 2],
@@ -43,8 +43,8 @@ struct Rectangle {
 /// The eye's side of the paths of a class.
 #[derive(Clone, Debug)]
 pub(super) struct Eye {
-    film: Film,
-    way: Way,
+    pub(super) film: Film,
+    pub(super) way: Way,
     center: [f64; 2],
     half_width: [f64; 2],
 }
@@ -181,6 +181,11 @@ impl Rectangle {
             ],
             reflectance: mirror.reflectance,
         }
+    }
+
+    /// The mirror image of a point.
+    pub(super) fn image(&self, p: Vec3<f64>) -> Vec3<f64> {
+        p - self.normal * (2.0 * self.height(p))
     }
 
     fn height(&self, p: Vec3<f64>) -> f64 {

@@ -13,12 +13,13 @@
 use core::f64::consts::PI;
 use core::ops::Range;
 
-use super::Moments;
+use super::chart::link::Receiver;
 use super::entry::{EntryExpectation, Estimator};
 use super::eye::Eye;
-use super::light::unknown;
+use super::light::{Class, unknown};
 use super::quadrature::Pair;
 use super::tile::{Sampled, Tile, refine, total};
+use super::{Kernel, Moments, Technique};
 use crate::class::PathClass;
 use crate::scene::{Entry, InvalidParameter};
 
@@ -94,6 +95,32 @@ impl FrameExpectation {
     /// Columns and rows.
     pub fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// The light of a class.
+    pub(super) fn light(&self, class: usize) -> &Class {
+        self.expectation.light(self.layers[class].position)
+    }
+
+    pub(super) fn receiver(&self) -> Receiver {
+        self.expectation.receiver()
+    }
+
+    pub(super) fn estimator(&self) -> (Technique, Kernel, &[f64]) {
+        self.expectation.estimator()
+    }
+
+    pub(super) fn technique(&self) -> Technique {
+        self.estimator().0
+    }
+
+    /// ρ/π.
+    pub(super) fn brightness(&self) -> f64 {
+        self.brightness
+    }
+
+    pub(super) fn eye(&self, class: usize) -> &Eye {
+        &self.layers[class].eye
     }
 
     /// Mean and second moment of the radiance [W m⁻² sr⁻¹] of a class on a tile, each sample to `tolerance × max(|value|, floor)`;

@@ -132,6 +132,17 @@ impl<'a> Connection<'a> {
         }
     }
 
+    /// Where a ray from a vertex meets the receiver's plane, and how far that is.
+    pub(super) fn ends(&self, s: Vec3<f64>, direction: Vec3<f64>) -> Option<([f64; 2], f64)> {
+        let t = (self.receiver.z - s.z) / direction.z;
+        (t > 0.0 && t < f64::INFINITY).then(|| ([s.x + direction.x * t, s.y + direction.y * t], t))
+    }
+
+    /// Moves the receiver point.
+    pub(super) fn move_to(&mut self, x: [f64; 2]) {
+        (self.x.x, self.x.y) = (x[0], x[1]);
+    }
+
     /// Whether the path is built from the camera.
     fn is_from_camera(&self) -> bool {
         matches!(self.technique, Technique::Camera | Technique::Symmetric)
@@ -140,7 +151,7 @@ impl<'a> Connection<'a> {
 
 /// The exact continuation of a unit direction `d` that meets a surface with unit normal `n` on the side of −d; `index` is that
 /// of the other medium relative to this one. Direction, Fresnel factor, and a margin that is negative beyond the critical angle.
-fn refracted(d: Vec3<f64>, n: Vec3<f64>, index: f64) -> (Vec3<f64>, f64, f64) {
+pub(super) fn refracted(d: Vec3<f64>, n: Vec3<f64>, index: f64) -> (Vec3<f64>, f64, f64) {
     let c = -d.dot(n);
     let q2 = index * index - (1.0 - c) * (1.0 + c);
     let q = sqrt(q2);

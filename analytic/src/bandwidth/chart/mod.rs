@@ -16,6 +16,7 @@ pub(super) mod connection;
 mod cutter;
 pub(super) mod link;
 pub(super) mod merging;
+pub(super) mod scatter;
 pub(super) mod scenes;
 mod star;
 mod surfaces;
