@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use crate::frames;
 use crate::mosaic::{Mosaic, Rectangle};
 use crate::regions::Regions;
+use crate::truth::TruthImage;
 
 /// The error of one rectangle is an estimate, which has been seen to be three times too small (`tests/bandwidth.rs`). Those of
 /// several are added up, not in quadrature, which makes up for it as their number grows: the factor on the estimate for so many.
@@ -40,6 +41,21 @@ pub fn unknown(entry: &Entry, technique: Technique) -> Option<String> {
 /// Whether every edge in the picture is a straight line, along which it can be cut.
 pub fn is_planar(kind: &Kind) -> bool {
     matches!(kind, Kind::Diffuse(_) | Kind::PlanarMirror(_))
+}
+
+/// The exact image at finite bandwidth: regular classes as they are, the others as the estimator has them on average; an angle [rad], or
+/// a radius [m] for `Merge` and `Linked`. Errors of the latter are estimates, of about a percent of a pixel.
+///
+/// # Errors
+/// As [`class_means`].
+pub fn image(
+    entry: &Entry,
+    technique: Technique,
+    kernel: Kernel,
+    bandwidth: f64,
+    tolerance: f64,
+) -> Result<TruthImage, InvalidParameter> {
+    frames::image(entry, technique, kernel, bandwidth, tolerance)
 }
 
 /// Mean over the whole image of the radiance [W m⁻² sr⁻¹] of each regularized class, and the second moment of one sample

@@ -6,13 +6,14 @@ use core::ops::Range;
 use nephroid_analytic::bandwidth::entry::Estimator;
 use nephroid_analytic::bandwidth::frame::FrameExpectation;
 use nephroid_analytic::bandwidth::tile::{self, Sampled, Tile, refine, together};
-use nephroid_analytic::bandwidth::{Convention, Kernel, Moments, Technique};
+use nephroid_analytic::bandwidth::{Bounded, Convention, Kernel, Moments, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 use rayon::prelude::*;
 
 use crate::regions::{Area, MOST_LEVELS, Regions, SMALLEST_TILE};
 use crate::scattered;
+use crate::truth::{self, TruthImage};
 
 /// Tiles sampled at most for one class.
 const MOST: usize = 20_000;
@@ -20,6 +21,8 @@ const MOST: usize = 20_000;
 const SAMPLES: f64 = 0.2;
 /// Tolerance of the first look, which tells how bright the picture is.
 const FIRST: f64 = 1e-2;
+/// Finest tolerance of a row of pixels that are covered with tiles.
+const ROWS: f64 = 1e-2;
 /// Cross-section [m²] of parallel light to which second moments of photons refer.
 const BEAM: f64 = 1.0;
 
@@ -73,6 +76,43 @@ pub fn area_moments(
     Ok((frame.classes().into_iter().enumerate())
         .map(|(k, class)| (class, of_class(k)))
         .collect())
+}
+
+/// The exact image at finite bandwidth: regular classes as they are, the others as the estimator has them on average. Pixels of
+/// these are known to `tolerance` of the class's mean or to what a budget of points gives; the errors tell, and are estimates.
+///
+/// # Errors
+/// What [`FrameExpectation::new`] finds.
+pub fn image(
+    entry: &Entry,
+    technique: Technique,
+    kernel: Kernel,
+    bandwidth: f64,
+    tolerance: f64,
+) -> Result<TruthImage, InvalidParameter> {
+    let frame = prepared(entry, technique, kernel, &[bandwidth])?;
+    let mut image = truth::image(entry, tolerance);
+    let (width, height) = frame.size();
+    for (k, class) in frame.classes().into_iter().enumerate() {
+        let pixels = if frame.scatters(k) {
+            scattered::pixels(&frame, k, tolerance)
+        } else {
+            let rows: Vec<Vec<Bounded>> = (0..height)
+                .into_par_iter()
+                .map(|j| {
+                    let floor = [0.0, f64::INFINITY];
+                    let row = frame.pixels(k, 0..width, j..j + 1, tolerance.max(ROWS), floor);
+                    row.into_iter().map(|m| m.mean).collect()
+                })
+                .collect();
+            rows.concat()
+        };
+        if let Some(layer) = image.classes.iter().position(|&c| c == class) {
+            image.layers[layer] = pixels.iter().map(|b| b.value).collect();
+            image.errors[layer] = pixels.iter().map(|b| b.error).collect();
+        }
+    }
+    Ok(image)
 }
 
 /// Moments of a class summed over a rectangle of pixels, each to a tolerance relative to itself.

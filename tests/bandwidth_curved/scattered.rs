@@ -72,7 +72,7 @@ fn the_plane_mirror() {
 
 /// Curved surfaces, flat water and photons of bundles: the brightest pixel of 8 × 8 against an interpolant of its points, each of
 /// which is integrated over the kernel about it. What this catches: a Jacobian, a cosine, a weight or an inverse of the eye's way
-/// that is wrong by 7 %; of the classes seen directly, 4 %. Nothing here is random: it passes or it does not.
+/// that is wrong by 6 % (seen in a mirror or through water, 14 %). Nothing here is random: it passes or it does not.
 #[test]
 fn pixels_of_curved_scenes() {
     for (name, technique) in [
@@ -116,11 +116,12 @@ fn pixels_of_curved_scenes() {
                 .expect("a pixel");
             let (i, j) = (brightest as u32 % 8, brightest as u32 / 8);
             let exact = frame.region(class, i..i + 1, j..j + 1, 1e-2, [0.0, f64::INFINITY]);
+            let allowed = if label.eye.is_empty() { 0.06 } else { 0.14 };
             for (k, exact) in [exact.mean, exact.second_moment].into_iter().enumerate() {
                 let [value, error] = pixel(brightest, k);
                 let off = (value - exact.value).abs();
                 assert!(
-                    off <= error + exact.error && error < 0.07 * value,
+                    off <= error + exact.error && error < allowed * value,
                     "{name} {technique} {label} {k}: {value} ± {error}, {exact:?}"
                 );
             }
@@ -168,12 +169,12 @@ fn a_small_radius_is_the_truth() {
             let exact: f64 = image.layers[layer].iter().sum();
             let [[value, error], _] = sums(&frame, class, 1 << 15);
             let off = (value - exact).abs();
-            println!(
-                "{name} {label}: {value} ± {error}, {exact} {:.2} % {:.2} %",
-                100.0 * (value / exact - 1.0),
-                100.0 * error / value
+            // The eye's fold in the cup's wall makes the sum converge slowly.
+            let sharp = if label.eye.is_empty() { 5e-3 } else { 0.02 };
+            assert!(
+                off <= error + 1e-3 * exact && error < sharp * exact,
+                "{name} {label}: {value} ± {error}, {exact}"
             );
-            let _ = off;
         }
     }
 }

@@ -1,11 +1,9 @@
 //! Spherical mirrors against a ray tracer of their own: reflection of vectors at an implicit sphere, Jacobians by finite
 //! differences, root counts by dense search. Nothing of Alhazen's polynomial or of the wavefront formula is used.
 
-mod sphere_tracer;
-
+use crate::sphere_tracer::{Cases, frame, lit_roots, ray, trace};
 use nephroid_analytic::kinds::sphere_mirror::{Light, Side, SphereMirror};
 use nephroid_analytic::vector::{Vec3, vec3};
-use sphere_tracer::{Cases, frame, lit_roots, ray, trace};
 
 /// Irradiance by fourth-order differences of the landing point; `None` if a neighbouring ray is blocked.
 fn irradiance(m: &SphereMirror<f64>, s: Vec3<f64>) -> Option<f64> {

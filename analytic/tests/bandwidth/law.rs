@@ -1,7 +1,6 @@
 //! The law of small bandwidths against closed forms, and against exact expectations at two small bandwidths.
 
 mod law_places;
-mod mirror_entry;
 
 use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};
 use nephroid_analytic::bandwidth::law::{Law, Place, SmallBandwidth, closed, extrapolated};

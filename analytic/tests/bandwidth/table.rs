@@ -3,7 +3,7 @@
 use nephroid_analytic::bandwidth::{Expectation, Kernel, PlanarSetting, Technique};
 use serde_json::Value;
 
-const TABLE: &str = include_str!("../../golden/reference/bandwidth-planar-mirror.json");
+const TABLE: &str = include_str!("../../../golden/reference/bandwidth-planar-mirror.json");
 
 fn number(v: &Value) -> f64 {
     v.as_str().unwrap().parse().unwrap()

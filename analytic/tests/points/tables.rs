@@ -1,10 +1,8 @@
 //! The closed forms against the committed 30-digit tables, per class and per root, without the program's file reader.
 
-mod reference_table;
-
 use nephroid_analytic::kinds::cylinder_cup::Root;
 
-use reference_table::{configurations, cup, mirror, number, vector, water};
+use crate::reference_table::{configurations, cup, mirror, number, vector, water};
 
 fn check(id: &str, value: f64, error: f64, expected: f64) {
     let difference = (value - expected).abs();
@@ -21,7 +19,7 @@ fn check(id: &str, value: f64, error: f64, expected: f64) {
 #[test]
 fn cup_tables() {
     let mut roots_seen = 0;
-    for c in configurations(include_str!("../../golden/reference/cylinder-cup.json")) {
+    for c in configurations(include_str!("../../../golden/reference/cylinder-cup.json")) {
         let p = &c["parameters"];
         if p.get("x_line").is_some() {
             continue;
@@ -71,7 +69,7 @@ fn cup_tables() {
 
 #[test]
 fn mirror_tables() {
-    for c in configurations(include_str!("../../golden/reference/planar-mirror.json")) {
+    for c in configurations(include_str!("../../../golden/reference/planar-mirror.json")) {
         let p = &c["parameters"];
         let mirror = mirror::<f64>(p);
         for point in c["points"].as_array().expect("points") {
@@ -91,7 +89,9 @@ fn mirror_tables() {
 
 #[test]
 fn interface_tables() {
-    for c in configurations(include_str!("../../golden/reference/flat-interface.json")) {
+    for c in configurations(include_str!(
+        "../../../golden/reference/flat-interface.json"
+    )) {
         let p = &c["parameters"];
         let water = water::<f64>(p);
         for point in c["points"].as_array().expect("points") {

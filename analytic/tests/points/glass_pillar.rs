@@ -1,11 +1,9 @@
 //! The glass pillar against second routes that share no code with it: forward tracing with Snell's law and Fresnel's equations in three
 //! dimensions, finite differences for the Jacobian; the energy of all classes; and the paraxial focus.
 
-mod forward;
-
 use std::f64::consts::PI;
 
-use forward::{Cases, V, add, dot, jacobian, land, unit};
+use crate::forward::{Cases, V, add, dot, jacobian, land, unit};
 use libm::{asin, cos, floor, hypot, sin, sqrt, tan};
 use nephroid_analytic::kinds::glass_pillar::GlassPillar;
 use nephroid_analytic::kinds::singularity::SingularityKind;

@@ -1,12 +1,10 @@
 //! Where a spherical mirror's singularities are reported, against root counts and against the traced map from mirror to
 //! receiver.
 
-mod sphere_tracer;
-
+use crate::sphere_tracer::{Cases, frame, lit_roots, ray, trace};
 use nephroid_analytic::kinds::singularity::SingularityKind;
 use nephroid_analytic::kinds::sphere_mirror::{Light, Side, SphereCaustic, SphereMirror};
 use nephroid_analytic::vector::{Vec3, vec3};
-use sphere_tracer::{Cases, frame, lit_roots, ray, trace};
 
 /// Across a fold at the reported distance the number of roots changes by two; on the axis the irradiance has no bound.
 #[test]

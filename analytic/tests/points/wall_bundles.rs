@@ -2,11 +2,9 @@
 //! the root with these parameters; at random floor points, every lit root is a ray of a bundle; and the stopped rays
 //! make the shadow.
 
-mod forward;
-
 use std::f64::consts::PI;
 
-use forward::{Cases, add, dot, jacobian, land, unit};
+use crate::forward::{Cases, add, dot, jacobian, land, unit};
 use libm::{atan2, cos, hypot, sin, tan};
 use nephroid_analytic::flux::{Bundle, Ray};
 use nephroid_analytic::kinds::conic_wall::ConicWall;

@@ -1,7 +1,5 @@
 //! Pixels and film regions at finite bandwidth, against a plain supersampling of a coarse image.
 
-mod mirror_entry;
-
 use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Expectation, Kernel, PlanarSetting, Technique};
 use nephroid_analytic::class::PathClass;
@@ -10,7 +8,7 @@ use nephroid_analytic::scene::{
 };
 use nephroid_analytic::vector::{Vec3, vec3};
 
-use mirror_entry::mirror_entry;
+use crate::mirror_entry::mirror_entry;
 
 const PI: f64 = core::f64::consts::PI;
 

@@ -1,14 +1,12 @@
 //! Pixels of planar scenes against routes that do not clip polygons.
 
-mod mirror_entry;
-
 use nephroid_analytic::pixel::PixelTruth;
 use nephroid_analytic::pixel::planar::{Eye, Light, PlanarView};
 use nephroid_analytic::pixel::polygon::Side;
 use nephroid_analytic::quadrature::gauss_legendre;
 use nephroid_analytic::scene::{Entry, Floor, RectangleMirror};
 
-use mirror_entry::mirror_entry;
+use crate::mirror_entry::mirror_entry;
 
 fn mirror_wall() -> Entry {
     let floor = Floor {

@@ -5,7 +5,7 @@ use nephroid_analytic::schedule::classify::{finite_rows, optimal_decay, optimal_
 use nephroid_analytic::schedule::{Classification, Expression, Number, Request, Weights, classify};
 use serde_json::Value;
 
-const TABLE: &str = include_str!("../../golden/reference/consistency.json");
+const TABLE: &str = include_str!("../../../golden/reference/consistency.json");
 
 fn table() -> Value {
     serde_json::from_str(TABLE).unwrap()

@@ -1,11 +1,9 @@
 //! Finite bandwidth of chains of specular interactions against chains that are traced step by step: sums over the directions at
 //! the receiver and over the light's rays, the planar engine, and the limit of small bandwidths.
 
-mod chain_tracer;
-
-use chain_tracer::scenes::{BEAM, Scene, ball, corner, cup, pillar, slab};
-use chain_tracer::sums::{angle, camera_sums, grid, light_sums, square, to_receiver};
-use chain_tracer::{Light, PI, V, add, dot};
+use crate::chain_tracer::scenes::{BEAM, Scene, ball, corner, cup, pillar, slab};
+use crate::chain_tracer::sums::{angle, camera_sums, grid, light_sums, square, to_receiver};
+use crate::chain_tracer::{Light, PI, V, add, dot};
 use nephroid_analytic::bandwidth::entry::{EntryExpectation, Estimator};
 use nephroid_analytic::bandwidth::{
     Convention, Expectation, HalfSpace, Kernel, PlanarSetting, Technique,

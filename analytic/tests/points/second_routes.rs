@@ -1,11 +1,9 @@
 //! Mirror and interface against a second route that shares no code with it: forward tracing with vectors in three dimensions, and finite
 //! differences for the Jacobian. Parameters are drawn anew for each case, with a fixed seed.
 
-mod forward;
-
 use std::f64::consts::PI;
 
-use forward::{Cases, V, add, dot, jacobian, land, unit};
+use crate::forward::{Cases, V, add, dot, jacobian, land, unit};
 use libm::{acos, asin, cos, hypot, sin, sqrt, tan};
 use nephroid_analytic::kinds::flat_interface::FlatInterface;
 use nephroid_analytic::kinds::planar_mirror::{PlanarMirror, Rectangle};

@@ -1,11 +1,9 @@
 //! The pillar against a second route that shares no code with it: forward tracing with vectors in three dimensions, finite differences
 //! for the Jacobian, a dense scan for the roots; the flat limit; and the flux on the whole floor.
 
-mod forward;
-
 use std::f64::consts::PI;
 
-use forward::{Cases, V, add, dot, jacobian, land, unit};
+use crate::forward::{Cases, V, add, dot, jacobian, land, unit};
 use libm::{acos, cos, hypot, sin};
 use nephroid_analytic::kinds::pillar::Pillar;
 use nephroid_analytic::kinds::planar_mirror::PlanarMirror;

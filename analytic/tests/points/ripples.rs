@@ -1,9 +1,7 @@
 //! Waves in several directions: against waves along x, against rays of vector optics at differences, and by topology.
 
 #[allow(dead_code, reason = "only the random cases are used here")]
-mod forward;
-
-use forward::Cases;
+use crate::forward::Cases;
 use libm::{cos, hypot, sin, sqrt};
 use nephroid_analytic::kinds::singularity::SingularityKind;
 use nephroid_analytic::kinds::water_waves::ripples::fold::FoldNetwork;

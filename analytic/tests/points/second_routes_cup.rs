@@ -1,11 +1,9 @@
 //! The circular wall against a second route that shares no code with it: forward tracing with vectors in three dimensions, and finite
 //! differences for the Jacobian. Parameters are drawn anew for each case, with a fixed seed.
 
-mod forward;
-
 use std::f64::consts::PI;
 
-use forward::{Cases, V, add, dot, jacobian, land, unit};
+use crate::forward::{Cases, V, add, dot, jacobian, land, unit};
 use libm::{acos, atan, cos, hypot, sin, sqrt, tan};
 use nephroid_analytic::kinds::cylinder_cup::point_light::Lamp;
 use nephroid_analytic::kinds::cylinder_cup::{Beam, CylinderCup, Light, Wall};

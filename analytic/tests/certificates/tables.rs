@@ -153,7 +153,7 @@ macro_rules! tables {
         $(
             #[test]
             fn $test() {
-                let tally = table(include_str!(concat!("../../golden/reference/", $file, ".json")));
+                let tally = table(include_str!(concat!("../../../golden/reference/", $file, ".json")));
                 assert!(tally.widest.0 <= $widest, "{tally:?}");
                 assert_eq!((tally.compared, tally.counted), ($compared, $counted), "{tally:?}");
             }

@@ -1,8 +1,6 @@
 //! The closed forms in double-double against the committed tables: thirty digits of every irradiance at every point. What
 //! they share with the `f64` instance is the formula; a formula that is only nearly right cannot pass here.
 
-mod reference_table;
-
 use nephroid_analytic::double_double::DoubleDouble;
 use nephroid_analytic::kinds::conic_mirrors::{Ellipsoid, Hyperboloid};
 use nephroid_analytic::kinds::conic_wall::ConicWall;
@@ -20,7 +18,7 @@ use nephroid_analytic::scalar::Scalar;
 use nephroid_analytic::vector::Vec3;
 use serde_json::Value;
 
-use reference_table::{configurations, number, vector};
+use crate::reference_table::{configurations, number, vector};
 
 type D = DoubleDouble;
 
@@ -36,7 +34,7 @@ fn sum(parts: impl Iterator<Item = Estimate<D>>) -> Estimate<D> {
 }
 
 fn mirror(p: &Value) -> Form {
-    let mirror = reference_table::mirror::<D>(p);
+    let mirror = crate::reference_table::mirror::<D>(p);
     Box::new(move |x| (Some(mirror.direct(x)), mirror.caustic(x)))
 }
 
@@ -139,7 +137,7 @@ fn stigmatic(p: &Value) -> Form {
 }
 
 fn interface(p: &Value) -> Form {
-    let water = reference_table::water::<D>(p);
+    let water = crate::reference_table::water::<D>(p);
     Box::new(move |x| (Some(water.direct(x.x, x.y)), water.caustic(x.x, x.y)))
 }
 
@@ -197,7 +195,7 @@ fn ball(p: &Value) -> Form {
 }
 
 fn cup(p: &Value) -> Form {
-    let cup = reference_table::cup::<D>(p);
+    let cup = crate::reference_table::cup::<D>(p);
     let bounces = p["max_bounces"].as_u64().expect("bounces") as u32;
     Box::new(move |x| {
         let caustic = sum((1..=bounces).map(|k| cup.caustic(x.x, x.y, k)));
@@ -321,7 +319,7 @@ macro_rules! tables {
         $(
             #[test]
             fn $test() {
-                let text = include_str!(concat!("../../golden/reference/", $file, ".json"));
+                let text = include_str!(concat!("../../../golden/reference/", $file, ".json"));
                 check(text, $form, $points);
             }
         )*

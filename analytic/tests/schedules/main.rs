@@ -1,0 +1,6 @@
+//! Schedules: the language, the classes, the laws, the table.
+
+mod classes;
+mod language;
+mod laws;
+mod table;
