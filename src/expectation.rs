@@ -16,7 +16,7 @@ use crate::mosaic::{Mosaic, Rectangle};
 use crate::regions::Regions;
 use crate::truth::TruthImage;
 
-/// The error of one rectangle is an estimate, which has been seen to be three times too small (`tests/bandwidth.rs`). Those of
+/// The error of one rectangle is an estimate, which has been seen to be three times too small (`tests/expectations/films.rs`). Those of
 /// several are added up, not in quadrature, which makes up for it as their number grows: the factor on the estimate for so many.
 fn allowance(rectangles: usize) -> f64 {
     (4.0 / libm::sqrt(rectangles as f64)).max(1.0)

@@ -1,7 +1,5 @@
 //! What films hold: the planned classes, closed values, nothing that is not finite, and the factor of a deliberate fault.
 
-mod iteration;
-
 use core::f64::consts::PI;
 
 use nephroid::entry;
@@ -11,7 +9,7 @@ use nephroid::integrators::{
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{CylinderCupScene, DiffuseScene, Entry, Kind};
 
-use iteration::one_iteration;
+use crate::iteration::one_iteration;
 
 const SCENES: [&str; 4] = ["floor", "mirror-wall", "cup", "pool"];
 
@@ -222,8 +220,8 @@ fn light_tracing_fills_a_pixel_with_the_closed_value() {
 fn independent_techniques_agree_on_the_cup_and_in_the_pool() {
     // Scenes of this test alone: the biases were measured on them.
     let scenes = [
-        include_str!("scenes/cup.toml"),
-        include_str!("scenes/pool.toml"),
+        include_str!("../scenes/cup.toml"),
+        include_str!("../scenes/pool.toml"),
     ];
     for text in scenes {
         let mut entry = entry::from_toml("scenes", text).unwrap();

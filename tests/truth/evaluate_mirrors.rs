@@ -11,19 +11,19 @@ const TOLERANCE: f64 = 1e-12;
 const FILES: [(&str, &str); 4] = [
     (
         "concave-sphere",
-        include_str!("../golden/reference/concave-sphere.json"),
+        include_str!("../../golden/reference/concave-sphere.json"),
     ),
     (
         "convex-sphere",
-        include_str!("../golden/reference/convex-sphere.json"),
+        include_str!("../../golden/reference/convex-sphere.json"),
     ),
     (
         "glass-slab",
-        include_str!("../golden/reference/glass-slab.json"),
+        include_str!("../../golden/reference/glass-slab.json"),
     ),
     (
         "planar-chains",
-        include_str!("../golden/reference/planar-chains.json"),
+        include_str!("../../golden/reference/planar-chains.json"),
     ),
 ];
 

@@ -4,9 +4,9 @@ use nephroid::{entry, error::Error};
 use nephroid_analytic::scene::{Kind, PlanarMirrorScene};
 use proptest::prelude::*;
 
-const CUP: &str = include_str!("scenes/cup.toml");
-const MIRROR_WALL: &str = include_str!("scenes/mirror-wall.toml");
-const POOL: &str = include_str!("scenes/pool.toml");
+const CUP: &str = include_str!("../scenes/cup.toml");
+const MIRROR_WALL: &str = include_str!("../scenes/mirror-wall.toml");
+const POOL: &str = include_str!("../scenes/pool.toml");
 
 /// The error's message and help together, as a person sees them.
 fn complaint(text: &str) -> String {

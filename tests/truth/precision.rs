@@ -4,11 +4,9 @@
 //! A kind or a quantity without a row here fails, a kind of the catalogue without a row too. The vertical walls of the
 //! catalogue are measured on a grid as well, against the middle of the certified interval.
 
-mod consistency;
-
 use std::collections::BTreeMap;
 
-use consistency::{assert_consistent, relative_width, table, tables};
+use crate::consistency::{assert_consistent, relative_width, table, tables};
 use nephroid::entry;
 use nephroid::evaluate::evaluate_certified;
 use nephroid_analytic::certificate::{Certified, conic_wall, glass_pillar, pillar};

@@ -1,21 +1,19 @@
 //! Films bit by bit: the same on any number of threads, in any build, and at any bandwidth where nothing is regularized.
 
-mod iteration;
-
 use nephroid::entry;
 use nephroid::film::{Film, Layers};
 use nephroid::integrators::accumulate::accumulate;
 use nephroid::integrators::{Kernel, Settings, all, by_name};
 use nephroid_analytic::scene::Entry;
 
-use iteration::{empty, one_iteration};
+use crate::iteration::{empty, one_iteration};
 
 /// Scenes of this test alone, so that golden bits do not change with the catalogue's pictures.
 const SCENES: [(&str, &str); 4] = [
-    ("floor", include_str!("scenes/floor.toml")),
-    ("mirror-wall", include_str!("scenes/mirror-wall.toml")),
-    ("cup", include_str!("scenes/cup.toml")),
-    ("pool", include_str!("scenes/pool.toml")),
+    ("floor", include_str!("../scenes/floor.toml")),
+    ("mirror-wall", include_str!("../scenes/mirror-wall.toml")),
+    ("cup", include_str!("../scenes/cup.toml")),
+    ("pool", include_str!("../scenes/pool.toml")),
 ];
 
 fn load(scene: &str, width: u32, height: u32) -> Entry {
@@ -59,7 +57,7 @@ fn films_have_the_golden_bits() {
             }
         }
     }
-    let golden = include_str!("../golden/films.txt");
+    let golden = include_str!("../../golden/films.txt");
     assert!(lines == golden, "the films now have these bits:\n{lines}");
 }
 

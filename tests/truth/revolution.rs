@@ -1,6 +1,6 @@
 //! Mirrors of revolution over a floor: flux against solid angles, pixels against point values, and what is refused.
 
-mod gauss;
+use crate::gauss;
 
 use std::f64::consts::PI;
 

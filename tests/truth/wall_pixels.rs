@@ -1,7 +1,7 @@
 //! Pixels of the entries with vertical walls, by conservation of flux along rays, against the mean of the irradiance at
 //! points, which finds the rays by roots: no code in common but the camera.
 
-mod gauss;
+use crate::gauss;
 
 use nephroid::{entry, truth};
 use nephroid_analytic::camera::Film;

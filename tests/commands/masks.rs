@@ -36,7 +36,7 @@ fn shown(path: &Path) -> &str {
 
 /// The scene at a lower resolution.
 fn scene(name: &str) -> PathBuf {
-    let text = include_str!("../scenes/mirror-wall.toml");
+    let text = include_str!("../../scenes/mirror-wall.toml");
     let small = text.replace("= 128", &format!("= {SIDE}"));
     assert_ne!(text, small);
     let path = file(&format!("{name}.toml"));

@@ -7,23 +7,23 @@ use serde_json::{Value, json};
 const FILES: [(&str, &str); 5] = [
     (
         "paraboloid.json",
-        include_str!("../golden/reference/paraboloid.json"),
+        include_str!("../../golden/reference/paraboloid.json"),
     ),
     (
         "conic-mirrors.json",
-        include_str!("../golden/reference/conic-mirrors.json"),
+        include_str!("../../golden/reference/conic-mirrors.json"),
     ),
     (
         "stigmatic-refractors.json",
-        include_str!("../golden/reference/stigmatic-refractors.json"),
+        include_str!("../../golden/reference/stigmatic-refractors.json"),
     ),
     (
         "glass-sphere.json",
-        include_str!("../golden/reference/glass-sphere.json"),
+        include_str!("../../golden/reference/glass-sphere.json"),
     ),
     (
         "water-waves.json",
-        include_str!("../golden/reference/water-waves.json"),
+        include_str!("../../golden/reference/water-waves.json"),
     ),
 ];
 

@@ -194,7 +194,7 @@ fn every_entry() {
 fn probes_are_enclosed_from_decimals() {
     // 0.1 is not a double: over (0.1, 0) a light at (0.1, 0, 0.1) gives I/h² = 100 only for the decimals.
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("decimals.toml");
-    let text = include_str!("../scenes/floor.toml")
+    let text = include_str!("../../scenes/floor.toml")
         .replace("[0.35, -0.2, 1.7]", "[0.1, 0.0, 0.1]")
         .replace("intensity = 2.3", "intensity = 1.0");
     std::fs::write(&path, text).expect("a file");

@@ -1,6 +1,6 @@
 //! The furnace: the wall's closed form against flux, pixels against ray casting, and the remainder of the series.
 
-mod gauss;
+use crate::gauss;
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Entries with refraction: the closed form against rays of the renderer's own geometry, which shares no code with it.
 
-mod gauss;
+use crate::gauss;
 
 use glam::DVec3;
 use nephroid::entry;
@@ -226,7 +226,7 @@ fn no_light_comes_down_after_one_internal_reflection() {
 /// All light of the aperture comes to the floor, and in the focus to one point of it: the configuration is degenerate.
 #[test]
 fn a_lens_with_its_focus_on_the_floor_is_reported_as_stigmatic() {
-    let text = include_str!("../scenes/lens.toml");
+    let text = include_str!("../../scenes/lens.toml");
     let mut scene = entry::load("lens").unwrap();
     // The whole floor, from straight above, in one pixel.
     let whole = |scene: &mut Entry| {

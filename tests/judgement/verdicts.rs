@@ -2,8 +2,7 @@
 //!
 //! Each statistical test states the probability of a false alarm, which is at most 1e-6, and what it would catch.
 
-mod synthetic;
-
+use crate::synthetic::{Random, normal_sample, of_values, sample, spiky_sample};
 use nephroid::exit;
 use nephroid::judge::evidence::{Invalid, Sample};
 use nephroid::judge::finding::{State, exit_code};
@@ -12,7 +11,6 @@ use nephroid::judge::power::replicates_needed;
 use nephroid::judge::spending::looks;
 use nephroid::judge::verdict::{Case, Spent, decide, decide_at};
 use nephroid_analytic::camera::Bounded;
-use synthetic::{Random, normal_sample, of_values, sample, spiky_sample};
 
 const ONE: Bounded = Bounded {
     value: 1.0,

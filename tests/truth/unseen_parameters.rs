@@ -1,9 +1,7 @@
 //! Variations of the committed tables: other parameters, points and cameras. There are no expected values; what is certified
 //! is the truth, and shares no formula with the values.
 
-mod consistency;
-
-use consistency::{assert_consistent, relative_width, table, tables};
+use crate::consistency::{assert_consistent, relative_width, table, tables};
 use nephroid::evaluate::evaluate_certified;
 use serde_json::{Value, json};
 

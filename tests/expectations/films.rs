@@ -7,7 +7,7 @@ use nephroid_analytic::bandwidth::film::FilmExpectation;
 use nephroid_analytic::bandwidth::{Kernel, Technique};
 use nephroid_analytic::class::PathClass;
 
-const TABLE: &str = include_str!("../golden/reference/bandwidth-planar-mirror.json");
+const TABLE: &str = include_str!("../../golden/reference/bandwidth-planar-mirror.json");
 
 #[test]
 fn evaluate_meets_the_reference_table() {
