@@ -9,6 +9,7 @@ pub mod error;
 pub mod evaluate;
 pub mod exit;
 pub mod expectation;
+pub mod export;
 pub mod exr_output;
 pub mod extrapolation;
 pub mod film;

@@ -7,6 +7,7 @@ mod bias;
 mod converge;
 mod evaluate;
 mod explain;
+mod export;
 mod faults;
 mod golden;
 mod list;
@@ -48,6 +49,7 @@ enum Command {
     Evaluate(evaluate::Args),
     Probe(probe::Args),
     Explain(explain::Args),
+    Export(export::Args),
     Render(render::Args),
     Run(run::Args),
     Faults(faults::Args),
@@ -70,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Evaluate(args) => evaluate::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Explain(args) => explain::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Faults(args) => faults::run(&args),
