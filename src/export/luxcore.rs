@@ -13,8 +13,10 @@ pub const FILE: &str = "render.cfg";
 /// The name of the scene file.
 pub const SCENE_FILE: &str = "scene.scn";
 /// How one image is made.
-pub const COMMAND: &str = "pyluxcore-console -D renderengine.seed {seed} -D batch.haltspp {spp} -D renderengine.type {integrator} \
-     -D film.outputs.0.filename {out} render.cfg";
+pub const COMMAND: &str =
+    "python render.py --seed {seed} --spp {spp} --integrator {integrator} -o {out}";
+/// The name of the program that renders, and its text.
+pub const RENDER: (&str, &str) = ("render.py", include_str!("luxcore_render.py"));
 
 /// The renderer has no shapes of its own; a rectangle is exactly two triangles.
 pub fn is_native(_: &Geometry) -> bool {
@@ -67,7 +69,7 @@ pub fn configuration(model: &Model, plan: &Plan) -> String {
     // Vertices from the eye or from the light, the last one included: one less than edges on one side alone.
     let depth = plan.edges;
     format!(
-        "# {}. Rendered with pyluxcore-console; see README.md.
+        "# {}. Rendered by render.py; see README.md.
 scene.file = \"{SCENE_FILE}\"
 renderengine.type = BIDIRCPU
 renderengine.seed = 1
@@ -83,8 +85,7 @@ path.maxdepth = {depth}
 light.maxdepth = {depth}
 film.width = {width}
 film.height = {height}
-film.filter.type = BOX
-film.filter.width = 0.5
+film.filter.type = NONE
 film.imagepipeline.0.type = NOP
 film.outputs.0.type = RGB
 film.outputs.0.filename = \"image.exr\"

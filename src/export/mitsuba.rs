@@ -24,6 +24,21 @@ pub fn is_native(geometry: &Geometry) -> bool {
     }
 }
 
+/// How many zeros are appended to the seed. Pixels of `path`, and blocks of particles of `ptracer`, take the seed plus their number
+/// as their own: the images of two seeds that differ by less than the number of pixels share random numbers.
+pub fn seed_zeros(width: u32, height: u32) -> usize {
+    // Blocks at the border are whole ones.
+    let padded = |side: u32| u64::from(side.div_ceil(64)) * 64;
+    (padded(width) * padded(height)).to_string().len()
+}
+
+/// The largest seed: with the zeros, it is a number of 32 bits.
+pub fn largest_seed(width: u32, height: u32) -> u64 {
+    seed_zeros(width, height)
+        .try_into()
+        .map_or(0, |zeros| u64::from(u32::MAX) / 10_u64.pow(zeros))
+}
+
 /// The scene file.
 pub fn scene(model: &Model, plan: &Plan) -> String {
     let mut out = String::new();
@@ -38,6 +53,7 @@ pub fn scene(model: &Model, plan: &Plan) -> String {
         camera.height,
     );
     let (title, depth) = (&plan.title, plan.edges);
+    let zeros = "0".repeat(seed_zeros(width, height));
     let _ = write!(
         out,
         r#"<?xml version="1.0" encoding="utf-8"?>
@@ -63,7 +79,8 @@ pub fn scene(model: &Model, plan: &Plan) -> String {
         </transform>
         <sampler type="independent">
             <integer name="sample_count" value="$spp"/>
-            <integer name="seed" value="$seed"/>
+            <!-- Blocks of paths, or pixels, take the seeds that follow: neighbouring seeds would share them. -->
+            <integer name="seed" value="$seed{zeros}"/>
         </sampler>
         <film type="hdrfilm">
             <integer name="width" value="{width}"/>

@@ -59,6 +59,14 @@ impl Format {
         }
     }
 
+    /// The largest seed that the renderer takes.
+    pub fn largest_seed(self, entry: &Entry) -> u64 {
+        match self {
+            Format::Mitsuba => mitsuba::largest_seed(entry.camera.width, entry.camera.height),
+            Format::Pbrt | Format::Luxcore => i32::MAX as u64,
+        }
+    }
+
     fn is_native(self, geometry: &Geometry) -> bool {
         match self {
             Format::Mitsuba => mitsuba::is_native(geometry),
@@ -184,6 +192,7 @@ pub fn export(entry: &Entry, format: Format) -> Result<Export, Error> {
         Format::Luxcore => {
             text(luxcore::FILE, luxcore::configuration(&model, &plan));
             text(luxcore::SCENE_FILE, luxcore::scene(&model, &plan));
+            text(luxcore::RENDER.0, luxcore::RENDER.1.to_owned());
         }
     }
     let mut export = Export { files, meshed };
@@ -292,6 +301,7 @@ fn describe(entry: &Entry, format: Format, plan: &Plan, export: &Export) -> Valu
         "scene": entry.name,
         "format": format.name(),
         "command": format.command(),
+        "largest_seed": format.largest_seed(entry),
         "longest_path_edges": plan.edges,
         "closure": { "longest": closure.longest, "reason": closure.reason },
         "comparable": names(&plan.comparable),

@@ -23,7 +23,7 @@ pub fn text(entry: &Entry, format: Format, plan: &Plan, export: &Export) -> Stri
         .replace("{spp}", "64")
         .replace("{integrator}", integrators::of(format)[0].0)
         .replace("{out}", "image.exr");
-    let _ = write!(out, "```sh\n{example}\n```\n\n{}\n\n", notes(format));
+    let _ = write!(out, "```sh\n{example}\n```\n\n{}\n\n", notes(entry, format));
     out.push_str(
         "The image is linear, single precision, with a box filter of one pixel: the mean radiance over each pixel in W/(m² sr), the \
          same in every colour channel. Seeds give independent images.\n\n",
@@ -42,17 +42,19 @@ fn title(format: Format) -> &'static str {
     }
 }
 
-fn notes(format: Format) -> String {
+fn notes(entry: &Entry, format: Format) -> String {
     match format {
         Format::Mitsuba => format!(
-            "`seed`, `spp`, `integrator` and `max_depth` are parameters of `{}` with defaults; any RGB or monochrome variant will do.",
+            "`seed` (0 to {}), `spp`, `integrator` and `max_depth` are parameters of `{}` with defaults; any RGB or monochrome variant will \
+             do. Without the zeros that the file appends to it, images of seeds that are close would share random numbers.",
+            mitsuba::largest_seed(entry.camera.width, entry.camera.height),
             mitsuba::FILE
         ),
         Format::Pbrt => "The integrator is the file that is given before the scene. This format has not been measured with the renderer."
             .to_owned(),
-        Format::Luxcore => "`pyluxcore-console` comes with the package `pyluxcore`. Wait until it halts by itself: an image saved \
-                            before the first passes end is short of light. The screen window is moved by one row, by which the \
-                            renderer draws lower; a point light's gain is 4π per W/sr."
+        Format::Luxcore => "`render.py` needs the package `pyluxcore`. It waits until the renderer halts by itself: an image saved before \
+                            the first passes end is short of light. The same seed does not give the same image twice. The screen \
+                            window is moved by one row, by which the renderer draws lower; a point light's gain is 4π per W/sr."
             .to_owned(),
     }
 }

@@ -1,8 +1,8 @@
 //! How far a mesh moves the light, and how fine it must be.
 //!
 //! **A measured estimate from two nested tessellations.** The mesh of half the cell size has a vertex in the middle of every edge
-//! and every cell of this one, where it is the exact surface; the coarse mesh is off by the distance δ along the normal there, and
-//! its interpolated normal by the angle ε (a point that is moved along the surface by τ counts as κτ, κ the curvature of the edge).
+//! and every cell of this one, where it is the exact surface; the middle of the coarse mesh is at the distance δ from its foot on the
+//! surface, and its interpolated normal turned by the angle ε from the normal there.
 //! Both are O(h²), and largest in the middle. A ray of the light, and of the eye where it sees the surface, is then followed twice
 //! to the floor: as at the exact surface, and with the point moved by δ along the ray and the normal turned by ε along both
 //! tangents. The largest distance between the landings, in pixels of the camera and times the interactions of a chain, is the
@@ -16,7 +16,7 @@ use glam::DVec3;
 use nephroid_analytic::camera::Film;
 
 use super::mesh::Mesh;
-use super::model::{Light, Material, Model, Patch};
+use super::model::{Element, Light, Material, Model, Patch};
 use crate::geometry::dielectric::refract;
 use crate::geometry::scene::unit;
 use crate::geometry::specular::reflected;
@@ -86,7 +86,7 @@ fn estimate(
             let at = |di: f64, dj: f64| {
                 let s = (f64::from(i) + di) / f64::from(columns);
                 let t = (f64::from(j) + dj) / f64::from(rows);
-                (patch.at)(s, t)
+                (s, t)
             };
             // Along s, along t, and the diagonal of the cell's two triangles.
             for [a, b] in [
@@ -94,9 +94,9 @@ fn estimate(
                 [(0.0, 0.0), (0.0, 1.0)],
                 [(0.0, 0.0), (1.0, 1.0)],
             ] {
-                let ends = [at(a.0, a.1), at(b.0, b.1)];
+                let ends = [at(a.0, a.1), at(b.0, b.1)].map(|(s, t)| (patch.at)(s, t));
                 let middle = at(0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
-                let Some(off) = Off::of(ends, middle) else {
+                let Some(off) = Off::of(patch, ends, middle) else {
                     continue;
                 };
                 if let Material::Lambert { .. } = material {
@@ -121,21 +121,36 @@ struct Off {
 }
 
 impl Off {
-    fn of([a, b]: [(DVec3, DVec3); 2], (point, normal): (DVec3, DVec3)) -> Option<Self> {
-        let length = (b.0 - a.0).length();
-        if !(length > 0.0) {
+    /// What is told between two vertices, against the exact surface at the foot of the perpendicular from there, which is
+    /// near the parameters `near`.
+    fn of(patch: &Patch, [a, b]: [Element; 2], near: (f64, f64)) -> Option<Self> {
+        let chord = 0.5 * (a.0 + b.0);
+        if !((b.0 - a.0).length() > 0.0) {
             return None;
         }
-        let offset = point - 0.5 * (a.0 + b.0);
-        let height = offset.dot(normal);
-        let along = (offset - normal * height).length();
-        let curvature = (b.1 - a.1).length() / length;
-        let angle = (unit(a.1 + b.1) - normal).length() + curvature * along;
+        let (mut s, mut t) = near;
+        for _ in 0..3 {
+            let step = 1e-5;
+            let along = |ds: f64, dt: f64| {
+                let (p, q) = ((patch.at)(s + ds, t + dt).0, (patch.at)(s - ds, t - dt).0);
+                (p - q) / (2.0 * step)
+            };
+            let (u, v) = (along(step, 0.0), along(0.0, step));
+            let miss = chord - (patch.at)(s, t).0;
+            let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
+            let determinant = uu * vv - uv * uv;
+            if !(determinant > 1e-12 * uu * vv) {
+                break;
+            }
+            s += (vv * u.dot(miss) - uv * v.dot(miss)) / determinant;
+            t += (uu * v.dot(miss) - uv * u.dot(miss)) / determinant;
+        }
+        let (point, normal) = (patch.at)(s, t);
         Some(Off {
             point,
             normal,
-            height: height.abs(),
-            angle,
+            height: (chord - point).length(),
+            angle: (unit(a.1 + b.1) - normal).length(),
         })
     }
 
