@@ -14,7 +14,7 @@ pub const FILE: &str = "render.cfg";
 pub const SCENE_FILE: &str = "scene.scn";
 /// How one image is made.
 pub const COMMAND: &str =
-    "python render.py --seed {seed} --spp {spp} --integrator {integrator} -o {out}";
+    "python {dir}/render.py --seed {seed} --spp {spp} --integrator {integrator} -o {out}";
 /// The name of the program that renders, and its text.
 pub const RENDER: (&str, &str) = ("render.py", include_str!("luxcore_render.py"));
 

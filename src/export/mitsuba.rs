@@ -11,8 +11,7 @@ use super::{Plan, number};
 /// The name of the scene file.
 pub const FILE: &str = "scene.xml";
 /// How one image is made.
-pub const COMMAND: &str =
-    "mitsuba -m scalar_rgb -Dseed={seed} -Dspp={spp} -Dintegrator={integrator} -o {out} scene.xml";
+pub const COMMAND: &str = "mitsuba -m scalar_rgb -Dseed={seed} -Dspp={spp} -Dintegrator={integrator} -o {out} {dir}/scene.xml";
 
 /// Whether the renderer has the shape itself.
 pub fn is_native(geometry: &Geometry) -> bool {
@@ -24,19 +23,12 @@ pub fn is_native(geometry: &Geometry) -> bool {
     }
 }
 
-/// How many zeros are appended to the seed. Pixels of `path`, and blocks of particles of `ptracer`, take the seed plus their number
-/// as their own: the images of two seeds that differ by less than the number of pixels share random numbers.
-pub fn seed_zeros(width: u32, height: u32) -> usize {
+/// How far apart seeds must be. Pixels of `path`, and blocks of particles of `ptracer`, take the seed plus their number as their
+/// own: the images of two seeds that differ by less than the number of pixels share random numbers.
+pub fn seed_spacing(width: u32, height: u32) -> u64 {
     // Blocks at the border are whole ones.
     let padded = |side: u32| u64::from(side.div_ceil(64)) * 64;
-    (padded(width) * padded(height)).to_string().len()
-}
-
-/// The largest seed: with the zeros, it is a number of 32 bits.
-pub fn largest_seed(width: u32, height: u32) -> u64 {
-    seed_zeros(width, height)
-        .try_into()
-        .map_or(0, |zeros| u64::from(u32::MAX) / 10_u64.pow(zeros))
+    padded(width) * padded(height)
 }
 
 /// The scene file.
@@ -53,7 +45,7 @@ pub fn scene(model: &Model, plan: &Plan) -> String {
         camera.height,
     );
     let (title, depth) = (&plan.title, plan.edges);
-    let zeros = "0".repeat(seed_zeros(width, height));
+    let spacing = seed_spacing(width, height);
     let _ = write!(
         out,
         r#"<?xml version="1.0" encoding="utf-8"?>
@@ -79,8 +71,8 @@ pub fn scene(model: &Model, plan: &Plan) -> String {
         </transform>
         <sampler type="independent">
             <integer name="sample_count" value="$spp"/>
-            <!-- Blocks of paths, or pixels, take the seeds that follow: neighbouring seeds would share them. -->
-            <integer name="seed" value="$seed{zeros}"/>
+            <!-- Pixels, or blocks of particles, take the seeds that follow: seeds closer than {spacing} share random numbers. -->
+            <integer name="seed" value="$seed"/>
         </sampler>
         <film type="hdrfilm">
             <integer name="width" value="{width}"/>

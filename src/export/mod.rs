@@ -12,6 +12,7 @@ pub mod mitsuba;
 pub mod model;
 pub mod pbrt;
 mod readme;
+mod surfaces;
 pub mod tessellation;
 
 use std::fs;
@@ -50,7 +51,7 @@ impl Format {
         }
     }
 
-    /// The command that makes one image, run in the directory, with `{seed}`, `{spp}`, `{integrator}` and `{out}`.
+    /// The command that makes one image, with `{seed}`, `{spp}`, `{integrator}`, `{out}` and the exported directory `{dir}`.
     pub const fn command(self) -> &'static str {
         match self {
             Format::Mitsuba => mitsuba::COMMAND,
@@ -59,11 +60,11 @@ impl Format {
         }
     }
 
-    /// The largest seed that the renderer takes.
-    pub fn largest_seed(self, entry: &Entry) -> u64 {
+    /// How far apart seeds must be for images that share no random numbers.
+    pub fn seed_spacing(self, entry: &Entry) -> u64 {
         match self {
-            Format::Mitsuba => mitsuba::largest_seed(entry.camera.width, entry.camera.height),
-            Format::Pbrt | Format::Luxcore => i32::MAX as u64,
+            Format::Mitsuba => mitsuba::seed_spacing(entry.camera.width, entry.camera.height),
+            Format::Pbrt | Format::Luxcore => 1,
         }
     }
 
@@ -301,7 +302,7 @@ fn describe(entry: &Entry, format: Format, plan: &Plan, export: &Export) -> Valu
         "scene": entry.name,
         "format": format.name(),
         "command": format.command(),
-        "largest_seed": format.largest_seed(entry),
+        "seed_spacing": format.seed_spacing(entry),
         "longest_path_edges": plan.edges,
         "closure": { "longest": closure.longest, "reason": closure.reason },
         "comparable": names(&plan.comparable),

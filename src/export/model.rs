@@ -141,7 +141,7 @@ pub struct Model {
     pub camera_index: f64,
     /// The floor's bounds in x and y [m], where there is one.
     pub floor: Option<[[f64; 2]; 2]>,
-    /// The most specular interactions in a row on one side of the diffuse vertex.
+    /// The most specular interactions in a row on one side of the diffuse vertex, of the classes that are compared.
     pub longest_chain: usize,
 }
 

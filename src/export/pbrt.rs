@@ -15,8 +15,7 @@ use super::{Plan, number};
 /// The name of the scene file.
 pub const FILE: &str = "scene.pbrt";
 /// How one image is made.
-pub const COMMAND: &str =
-    "pbrt --seed {seed} --spp {spp} --outfile {out} integrator-{integrator}.pbrt scene.pbrt";
+pub const COMMAND: &str = "pbrt --seed {seed} --spp {spp} --outfile {out} {dir}/integrator-{integrator}.pbrt {dir}/scene.pbrt";
 
 /// Distance of a mirror's black back, relative to the mirror's size.
 const BACK: f64 = 1e-4;

@@ -22,14 +22,21 @@ pub fn text(entry: &Entry, format: Format, plan: &Plan, export: &Export) -> Stri
         .replace("{seed}", "1")
         .replace("{spp}", "64")
         .replace("{integrator}", integrators::of(format)[0].0)
-        .replace("{out}", "image.exr");
+        .replace("{out}", "image.exr")
+        .replace("{dir}/", "");
     let _ = write!(out, "```sh\n{example}\n```\n\n{}\n\n", notes(entry, format));
     out.push_str(
         "The image is linear, single precision, with a box filter of one pixel: the mean radiance over each pixel in W/(m² sr), the \
-         same in every colour channel. Seeds give independent images.\n\n",
+         same in every colour channel.\n\n",
     );
     depth(&mut out, entry, plan);
-    sampled(&mut out, format, plan);
+    let known = crate::entry::names().any(|known| known == name);
+    sampled(
+        &mut out,
+        if known { name } else { "SCENE.toml" },
+        format,
+        plan,
+    );
     geometry(&mut out, export);
     out
 }
@@ -45,10 +52,11 @@ fn title(format: Format) -> &'static str {
 fn notes(entry: &Entry, format: Format) -> String {
     match format {
         Format::Mitsuba => format!(
-            "`seed` (0 to {}), `spp`, `integrator` and `max_depth` are parameters of `{}` with defaults; any RGB or monochrome variant will \
-             do. Without the zeros that the file appends to it, images of seeds that are close would share random numbers.",
-            mitsuba::largest_seed(entry.camera.width, entry.camera.height),
-            mitsuba::FILE
+            "`seed`, `spp`, `integrator` and `max_depth` are parameters of `{}` with defaults; any RGB or monochrome variant will do. \
+             Seeds must be at least {} apart: images of closer ones share random numbers, and do not show their noise. (The gate \
+             draws its seeds from all over 31 bits.)",
+            mitsuba::FILE,
+            mitsuba::seed_spacing(entry.camera.width, entry.camera.height)
         ),
         Format::Pbrt => "The integrator is the file that is given before the scene. This format has not been measured with the renderer."
             .to_owned(),
@@ -93,7 +101,7 @@ fn depth(out: &mut String, entry: &Entry, plan: &Plan) {
     }
 }
 
-fn sampled(out: &mut String, format: Format, plan: &Plan) {
+fn sampled(out: &mut String, scene: &str, format: Format, plan: &Plan) {
     out.push_str("## What the integrators can sample\n\n| integrator | how | can sample | cannot |\n| --- | --- | --- | --- |\n");
     let mut example = None;
     for (name, reach) in integrators::of(format) {
@@ -112,10 +120,14 @@ fn sampled(out: &mut String, format: Format, plan: &Plan) {
     }
     if let Some((name, cannot)) = example {
         let declared: String = cannot.iter().map(|c| format!(" --cannot {c}")).collect();
+        let command = format
+            .command()
+            .replace("{spp}", "64")
+            .replace("{integrator}", name);
         let _ = write!(
             out,
-            "\nA class that an integrator cannot sample is declared to the gate, here for `{name}`:\n\n```sh\nnephroid gate SCENE \
-             run-*.exr{declared}\n```\n\n"
+            "\nThe gate is told what an integrator cannot sample; here it runs `{name}` itself, started in this directory:\n\n```sh\n\
+             nephroid gate {scene}{declared} \\\n  --command '{command}'\n```\n\n"
         );
     }
 }

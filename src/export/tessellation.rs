@@ -24,7 +24,7 @@ use crate::geometry::specular::reflected;
 /// The displacement that a mesh may cause [pixels]: 4η is then a tenth of a margin of 1 %.
 pub const ALLOWED: f64 = 2.5e-4;
 /// The most triangles of a mesh.
-pub const MOST_TRIANGLES: u32 = 2_000_000;
+pub const MOST_TRIANGLES: u32 = 2_100_000;
 /// Cells that are looked at along each side.
 const SAMPLES: u32 = 48;
 
@@ -199,7 +199,8 @@ impl Off {
     }
 }
 
-/// Where a ray lands on the floor's rectangle after it has been turned at a surface; `None` elsewhere, and where the surface absorbs.
+/// Where a ray lands on the floor's rectangle after it has been turned at a surface; `None` elsewhere, and where the surface
+/// absorbs or passes on less than half.
 fn landing(
     model: &Model,
     material: Material,
@@ -217,7 +218,8 @@ fn landing(
                 (-normal, 1.0 / index)
             };
             let (outgoing, reflectance) = refract(incoming, normal, n);
-            if !(reflectance < 1.0) {
+            // At grazing incidence rays turn a lot, and carry little.
+            if !(reflectance < 0.5) {
                 return None;
             }
             outgoing
