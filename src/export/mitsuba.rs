@@ -138,8 +138,8 @@ fn geometry(shape: &Shape) -> (&'static str, Vec<String>) {
         Geometry::Disk {
             center,
             radius,
-            inner,
-        } if inner == 0.0 => ("disk", frame(center, DVec3::X * radius, DVec3::Y * radius)),
+            inner: 0.0,
+        } => ("disk", frame(center, DVec3::X * radius, DVec3::Y * radius)),
         Geometry::Sphere {
             center,
             radius: r,
