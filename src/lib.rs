@@ -12,6 +12,7 @@ pub mod expectation;
 pub mod exr_output;
 pub mod extrapolation;
 pub mod film;
+pub mod foreign;
 mod frames;
 pub mod geometry;
 pub mod golden;
