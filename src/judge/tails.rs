@@ -41,9 +41,15 @@ impl Tail {
     /// The tail on the side of large means if `above`, else of small ones, for a sample's number of replicates and their
     /// skewness.
     pub fn new(replicates: usize, skewness: f64, above: bool) -> Self {
+        let error = ALLOWANCE * sqrt(6.0 / replicates as f64);
+        Tail::with_error(replicates, skewness, error, above)
+    }
+
+    /// The same for a skewness that is known to ± `error` otherwise than from so many values.
+    pub fn with_error(replicates: usize, skewness: f64, error: f64, above: bool) -> Self {
         let n = replicates as f64;
         let towards = if above { -skewness } else { skewness };
-        let bound = (towards + ALLOWANCE * sqrt(6.0 / n)).max(0.0);
+        let bound = (towards + error).max(0.0);
         Tail {
             dof: replicates.saturating_sub(1) as f64,
             growth: bound / (3.0 * sqrt(n)),
