@@ -14,6 +14,7 @@ pub mod extrapolation;
 pub mod film;
 pub mod foreign;
 mod frames;
+pub mod gate;
 pub mod geometry;
 pub mod golden;
 pub mod integrators;

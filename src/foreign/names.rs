@@ -115,7 +115,7 @@ fn some(classes: &[PathClass], holds: impl Fn(&PathClass) -> bool) -> Option<Vec
 }
 
 /// Whether a class is one of those that a name stands for, in which `S` may be `R` or `T`.
-fn is_one_of(class: &PathClass, named: &PathClass) -> bool {
+pub fn is_one_of(class: &PathClass, named: &PathClass) -> bool {
     let fits = |a: &Chain, b: &Chain| {
         a.len() == b.len()
             && a.iter()

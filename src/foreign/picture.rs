@@ -17,6 +17,8 @@ const LARGEST_FILE: u64 = 1 << 32;
 /// An image of another renderer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
+    /// Columns.
+    pub width: u32,
     /// The file, as it was named.
     pub file: String,
     /// The layers of light: the image first, if there is one, then those of classes.
@@ -187,6 +189,7 @@ fn picture(file: &str, raw: Raw, width: u32, classes: &[PathClass]) -> Result<Pi
     }
     layers.sort_by_key(|l| l.classes.is_some());
     Ok(Picture {
+        width,
         file: file.to_owned(),
         layers,
         covered: raw.covered,

@@ -136,7 +136,8 @@ pub fn decide_at(
         return finding;
     }
     let equivalent = |sample: &Sample, truth: Bounded| {
-        let has_meaning = unmet_condition(sample, case.fewest).is_none() && truth.value > truth.error;
+        let has_meaning =
+            unmet_condition(sample, case.fewest).is_none() && truth.value > truth.error;
         if has_meaning {
             equivalence_p(sample, truth, margin) / share
         } else {
