@@ -16,7 +16,6 @@ pub type Image = Vec<f64>;
 
 /// A scene with its exact image.
 pub struct Scene {
-    pub argument: String,
     pub entry: Entry,
     pub truth: TruthImage,
 }
@@ -26,7 +25,6 @@ impl Scene {
         let entry = entry::load(argument).unwrap();
         let truth = truth::image(&entry, 1e-4);
         Scene {
-            argument: argument.to_owned(),
             entry,
             truth,
         }
