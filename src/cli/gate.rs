@@ -41,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "COMMAND")]
     command: Option<String>,
     /// Let `sh -c` read the command.
-    #[arg(long, requires = "command")]
+    #[arg(long)]
     shell: bool,
     /// Seconds that one run of the command may take, 0.01 to 1e6.
     #[arg(long, value_name = "S", default_value_t = 600.0, value_parser = seconds, allow_negative_numbers = true)]
@@ -221,6 +221,14 @@ fn request(args: &Args) -> Result<Request, Error> {
             found: format!("{},{}", offset[0], offset[1]),
             allowed: "0,0 with --technique: its expectations are known in the scene's frame only"
                 .to_owned(),
+        });
+    }
+    if args.shell && args.command.is_none() {
+        return Err(Error::Parameter {
+            file: "command line".to_owned(),
+            key: "--shell".to_owned(),
+            found: "given without --command".to_owned(),
+            allowed: "with --command only".to_owned(),
         });
     }
     let images = match &args.command {

@@ -55,7 +55,7 @@ pub fn of(subject: &Subject) -> Option<String> {
     let residual = Residual::new(width, &measured, &expected, &variance)?;
     let brightest = stack.images.iter().flatten().copied().fold(0.0, f64::max);
     let list = all(truth, classes, covered, brightest);
-    let best = best(&residual, &list);
+    let best = best(&residual, &list, &variance);
     let explained = residual.explained(best.misfit);
     let least = match best.cause {
         Cause::Zoomed(_) => EXPLAINED_BY_ZOOM,
@@ -69,7 +69,7 @@ pub fn of(subject: &Subject) -> Option<String> {
         ));
     }
     let constants = candidates(truth.entry(), None);
-    let factor = residual.factor(&expected, |_| true);
+    let factor = ratio(&measured, &expected, &variance);
     if let [only] = classes {
         let covariates = covariates::of(truth.entry(), truth.classes()[*only]);
         let is_named = |[factor, error]: [f64; 2]| !names(&constants, factor, error).is_empty();
@@ -84,7 +84,7 @@ pub fn of(subject: &Subject) -> Option<String> {
 }
 
 /// The cause that fits best; what is less simple must fit better by what noise does not give.
-fn best(residual: &Residual, list: &[Hypothesis]) -> Fit {
+fn best(residual: &Residual, list: &[Hypothesis], variance: &[f64]) -> Fit {
     let gain = residual.least_gain();
     let mut best: Option<Fit> = None;
     let mut consider = |fit: Fit, must_gain: f64| {
@@ -100,7 +100,7 @@ fn best(residual: &Residual, list: &[Hypothesis]) -> Fit {
         for h in list {
             let is_plain = h.cause == Cause::Factor;
             let factor = if is_plain || with_factor {
-                Some(residual.factor(&h.picture, |i| !h.picture[i].is_nan()))
+                Some(ratio(residual.measured, &h.picture, variance))
             } else {
                 None
             };
@@ -130,6 +130,18 @@ fn best(residual: &Residual, list: &[Hypothesis]) -> Fit {
         factor: None,
         misfit: f64::INFINITY,
     })
+}
+
+/// The ratio of two images' sums with its standard error: other than least squares it does not depend on how noise and
+/// weights go together.
+fn ratio(measured: &[f64], picture: &[f64], variance: &[f64]) -> [f64; 2] {
+    let (mut seen, mut total, mut spread) = (0.0, 0.0, 0.0);
+    for ((m, p), v) in measured.iter().zip(picture).zip(variance) {
+        if !p.is_nan() {
+            (seen, total, spread) = (seen + m, total + p, spread + v);
+        }
+    }
+    [seen / total, libm::sqrt(spread) / total]
 }
 
 impl Subject<'_> {

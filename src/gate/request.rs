@@ -257,13 +257,10 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Whether all is decided, or more images would not help.
+    /// Whether all is decided, or more images would not help; what a picture does not tell is no reason to go on.
     fn is_settled(&self) -> bool {
-        let is_settled = |j: &Judged| {
-            is_final(&j.finding)
-                || (j.finding.state == State::Undecided && j.finding.replicates_needed.is_none())
-        };
-        self.judged.iter().flatten().all(is_settled)
+        let is_open = |f: &Finding| f.state == State::Undecided && f.replicates_needed.is_some();
+        self.judged.iter().flatten().all(|j| !is_open(&j.finding))
     }
 
     fn outcome(self, pictures: &[Picture], looks: u32, started: Instant) -> Outcome {

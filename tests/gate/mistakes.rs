@@ -15,7 +15,7 @@ fn the_right_image_is_equivalent() {
     assert_eq!(state(&answer, "all"), "equivalent");
     assert_eq!(state(&answer, "LDE"), "equivalent");
     let files = scene.layers("right-layers", 16, |_, v| Some(v.to_vec()));
-    let (code, answer) = json("mirror-wall", &files, &[]);
+    let (code, answer) = json("mirror-wall", &files, &["--margin", "0.02"]);
     assert_eq!(code, 0, "{answer:#}");
     for class in ["LDE", "LSDE", "LDSE", "LSDSE", "all"] {
         assert_eq!(state(&answer, class), "equivalent", "{answer:#}");
