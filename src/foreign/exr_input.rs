@@ -242,7 +242,7 @@ fn samples_per_pixel(header: &Header) -> Option<f64> {
             AttributeValue::F32(v) => f64::from(*v),
             _ => return None,
         };
-        (name.to_string() == "samplesPerPixel" && value >= 1.0).then_some(value)
+        (*name == *"samplesPerPixel" && value >= 1.0).then_some(value)
     };
     others
         .into_iter()

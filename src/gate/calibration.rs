@@ -14,6 +14,8 @@ use crate::diagnosis::{covariates, sentence, shown, shown_names};
 const EXPLAINED: f64 = 0.9;
 /// The same for a magnification, which is known in steps only.
 const EXPLAINED_BY_ZOOM: f64 = 0.6;
+/// Standard errors beyond which a factor is not 1.
+const SURE: f64 = 5.0;
 /// Factors that are units, not mistakes: they are worth a `--gain`.
 const UNITS: [&str; 8] = ["π", "1/π", "4π", "1/(4π)", "2π", "1/(2π)", "2", "1/2"];
 
@@ -52,7 +54,12 @@ pub fn of(subject: &Subject) -> Option<String> {
         .for_each(|(v, c)| *v = if *c { *v } else { 0.0 });
     let measured = stack.mean();
     let variance = stack.variance_of_mean(&expected);
-    let residual = Residual::new(width, &measured, &expected, &variance)?;
+    let factor = ratio(&measured, &expected, &variance);
+    let Some(residual) = Residual::new(width, &measured, &expected, &variance) else {
+        // Too noisy for a pattern; the sum may still be off.
+        let is_off = (factor[0] - 1.0).abs() > SURE * factor[1];
+        return is_off.then(|| subject.factor(factor));
+    };
     let brightest = stack.images.iter().flatten().copied().fold(0.0, f64::max);
     let list = all(truth, classes, covered, brightest);
     let best = best(&residual, &list, &variance);
@@ -69,7 +76,6 @@ pub fn of(subject: &Subject) -> Option<String> {
         ));
     }
     let constants = candidates(truth.entry(), None);
-    let factor = ratio(&measured, &expected, &variance);
     if let [only] = classes {
         let covariates = covariates::of(truth.entry(), truth.classes()[*only]);
         let is_named = |[factor, error]: [f64; 2]| !names(&constants, factor, error).is_empty();
@@ -148,18 +154,7 @@ impl Subject<'_> {
     fn sentence(&self, fit: &Fit) -> String {
         let beside = |f: [f64; 2]| format!("{}{}", shown(f), shown_names(&self.names(f)));
         let what = match &fit.cause {
-            Cause::Factor => {
-                let factor = fit.factor.unwrap_or([1.0, 0.0]);
-                let nearest = self.names(factor);
-                let advice = match nearest.iter().find(|n| UNITS.contains(&n.as_str())) {
-                    Some(_) => format!(
-                        "; if that is the renderer's unit, judge with `--gain {:.6}`",
-                        self.exact(&nearest, factor[0])
-                    ),
-                    None => String::new(),
-                };
-                return format!("looks like a constant factor {}{advice}", beside(factor));
-            }
+            Cause::Factor => return self.factor(fit.factor.unwrap_or([1.0, 0.0])),
             Cause::Missing(absent) => {
                 let names: Vec<String> = absent
                     .iter()
@@ -199,6 +194,19 @@ impl Subject<'_> {
             Some(f) => format!("{what}; times a constant factor {}", beside(f)),
             None => what,
         }
+    }
+
+    /// Of a constant factor alone.
+    fn factor(&self, factor: [f64; 2]) -> String {
+        let names = self.names(factor);
+        let advice = if names.iter().any(|n| UNITS.contains(&n.as_str())) {
+            let exact = self.exact(&names, factor[0]);
+            format!("; if that is the renderer's unit, judge with `--gain {exact:.6}`")
+        } else {
+            String::new()
+        };
+        let (value, named) = (shown(factor), shown_names(&names));
+        format!("looks like a constant factor {value}{named}{advice}")
     }
 
     fn names(&self, [factor, error]: [f64; 2]) -> Vec<String> {

@@ -131,8 +131,8 @@ pub fn plan(
     };
     let mut plan = Plan::default();
     let mut has_layer = vec![false; truth.classes().len()];
-    for k in 0..images.len() {
-        let Some(classes) = images[k].classes.clone() else {
+    for (k, layer) in images.iter().enumerate() {
+        let Some(classes) = layer.classes.clone() else {
             continue;
         };
         classes.iter().for_each(|&c| has_layer[c] = true);
@@ -142,8 +142,7 @@ pub fn plan(
             .filter(|c| !cannot.contains(c))
             .collect();
         if claimed.is_empty() {
-            plan.known
-                .push(builder.declared(&classes, &images[k].stack));
+            plan.known.push(builder.declared(&classes, &layer.stack));
         } else {
             plan.checks
                 .push(builder.layer(label(&claimed, truth.classes()), claimed, k));

@@ -2,7 +2,7 @@
 
 use super::blocks;
 use super::checks::{Check, missing};
-use super::stack::Stack;
+use super::stack::{Shared, Stack};
 use super::truths::Truth;
 use crate::judge::evidence::Sample;
 use crate::judge::finding::{Finding, State};
@@ -50,13 +50,19 @@ pub struct Judged {
 
 impl Look<'_> {
     /// Judges a check on its images.
-    pub fn judge(&self, check: &Check, stack: &Stack, thirds: &[f64], spent: &mut Spent) -> Judged {
+    pub fn judge(
+        &self,
+        check: &Check,
+        stack: &Stack,
+        shared: &Shared,
+        spent: &mut Spent,
+    ) -> Judged {
         let few = stack.images.len() < FEWEST_IMAGES;
         let sample_of = |k: usize| -> Sample {
             let functional = &check.statistics[k].functional;
             match stack.sample_by_variances(functional, self.regions) {
                 Some(sample) if few => sample,
-                _ => stack.sample(functional, thirds, self.regions),
+                _ => stack.sample(functional, shared, self.regions),
             }
         };
         let first = sample_of(0);

@@ -228,11 +228,7 @@ impl<'a> Session<'a> {
             &self.covered,
             &self.regions,
         );
-        let thirds: Vec<Vec<f64>> = self
-            .layers
-            .iter()
-            .map(|l| l.stack.third_moments())
-            .collect();
+        let shared: Vec<_> = self.layers.iter().map(|l| l.stack.shared()).collect();
         let look = Look {
             truth: &self.truth,
             regions: &self.regions,
@@ -249,7 +245,7 @@ impl<'a> Session<'a> {
                 let judged = look.judge(
                     check,
                     &self.layers[images].stack,
-                    &thirds[images],
+                    &shared[images],
                     &mut self.spent[k],
                 );
                 self.judged[k] = Some(judged);

@@ -19,6 +19,15 @@ pub struct Stack {
     pub variances: Option<Vec<Vec<f64>>>,
 }
 
+/// What all samples of a stack share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shared {
+    /// See [`Stack::third_moments`].
+    pub thirds: Vec<f64>,
+    /// See [`Stack::invalid`].
+    pub invalid: (Invalid, usize),
+}
+
 /// A linear function of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Functional {
@@ -93,7 +102,7 @@ impl Stack {
         let mean = self.mean();
         let off = |i: usize| mean[i] - truth[i];
         let pixel = |i: usize| {
-            let j = if (i + 1) % self.width == 0 {
+            let j = if (i + 1).is_multiple_of(self.width) {
                 i.saturating_sub(1)
             } else {
                 i + 1
@@ -157,6 +166,14 @@ impl Stack {
         (0..self.width.div_ceil(BLOCK)).map(block).collect()
     }
 
+    /// What all samples share.
+    pub fn shared(&self) -> Shared {
+        Shared {
+            thirds: self.third_moments(),
+            invalid: self.invalid(),
+        }
+    }
+
     /// Values that cannot be, and the image with the first.
     pub fn invalid(&self) -> (Invalid, usize) {
         let mut all = Invalid::default();
@@ -174,10 +191,11 @@ impl Stack {
 
     /// What the images say about a linear function of them. Its skewness comes from the pixels: of so few means it cannot
     /// be known; as much again is allowed for its error.
-    pub fn sample(&self, functional: &Functional, thirds: &[f64], regions: &Regions) -> Sample {
+    pub fn sample(&self, functional: &Functional, shared: &Shared, regions: &Regions) -> Sample {
+        let Shared { thirds, invalid } = shared;
         let (values, fewest, contributions) = functional.values(&self.images, regions);
         let (mean, variance) = moments(&values);
-        let (invalid, invalid_replicate) = self.invalid();
+        let (invalid, invalid_replicate) = *invalid;
         let skewness = functional.sum_of_powers(thirds, 3, regions) / libm::pow(variance, 1.5);
         let skewness = if skewness.is_finite() { skewness } else { 0.0 };
         // Each pixel has had a path at least: the bound of `evidence`.
