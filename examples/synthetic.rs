@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use libm::{cos, exp, log, pow, sqrt};
 use nephroid::judge::distributions::student_survival;
-use nephroid::judge::evidence::{Invalid, Sample, moments};
+use nephroid::judge::evidence::{FEWEST_REPLICATES, Invalid, Sample, moments};
 use nephroid::judge::family::holm;
 use nephroid::judge::finding::State;
 use nephroid::judge::hypotheses::{EQUIVALENCE_LEVEL, LEVEL, Levels, difference_p, equivalence_p};
@@ -124,6 +124,7 @@ fn sample(values: &[f64]) -> Sample {
         mean,
         variance,
         skewness: third / pow(variance, 1.5),
+        skewness_error: None,
         fewest_contributions: 200,
         contributions: 200 * values.len() as u64,
         invalid: Invalid::default(),
@@ -165,6 +166,7 @@ fn suites(runs: u32) -> bool {
                     truth: ONE,
                     weight: 1.0,
                     most: 512,
+                    fewest: FEWEST_REPLICATES,
                     dependence: None,
                     too_bright: None,
                     parts: Vec::new(),

@@ -216,16 +216,23 @@ impl Regions {
             .collect()
     }
 
+    /// The same for one area, by its position.
+    pub fn reduce_area(&self, position: usize, layer: &[f64]) -> (f64, u64) {
+        self.sum(&self.areas[position], layer)
+    }
+
     /// Number of pixels of each area.
     pub fn pixels(&self) -> Vec<u64> {
-        self.areas
-            .iter()
-            .map(|area| match area {
-                Area::Image => u64::from(self.width) * u64::from(self.height),
-                Area::Tile { width, height, .. } => u64::from(*width) * u64::from(*height),
-                Area::Mask(pixels) => pixels.len() as u64,
-            })
-            .collect()
+        (0..self.areas.len()).map(|k| self.pixels_of(k)).collect()
+    }
+
+    /// Number of pixels of one area, by its position.
+    pub fn pixels_of(&self, position: usize) -> u64 {
+        match &self.areas[position] {
+            Area::Image => u64::from(self.width) * u64::from(self.height),
+            Area::Tile { width, height, .. } => u64::from(*width) * u64::from(*height),
+            Area::Mask(pixels) => pixels.len() as u64,
+        }
     }
 
     fn sum(&self, area: &Area, layer: &[f64]) -> (f64, u64) {

@@ -9,6 +9,7 @@ mod evaluate;
 mod explain;
 mod export;
 mod faults;
+mod gate;
 mod golden;
 mod list;
 mod probe;
@@ -42,6 +43,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Verify(verify::Args),
+    Gate(gate::Args),
     List(list::Args),
     Bandwidth(bandwidth::Args),
     Bias(bias::Args),
@@ -65,6 +67,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Command::Verify(args) => verify::run(&args),
+        Command::Gate(args) => gate::run(&args),
         Command::List(args) => list::run(&args),
         Command::Bandwidth(args) => bandwidth::run(&args),
         Command::Bias(args) => bias::run(&args),

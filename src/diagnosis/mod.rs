@@ -19,7 +19,7 @@ use crate::truth::TruthImage;
 use crate::verify::replicates::{Canvas, Seeds, Shape};
 use constants::{candidates, names};
 use images::{Images, sample};
-use patterns::{Pattern, Residual, is_one};
+use patterns::{Fit, Pattern, Residual, is_one};
 pub use suite::{annotate, means_at_half};
 
 /// Phases of the streams, apart from those of pilots and of the test.
@@ -111,7 +111,7 @@ pub fn of(subject: &Subject) -> Option<String> {
 }
 
 /// A factor with its standard error.
-fn shown([factor, error]: [f64; 2]) -> String {
+pub(crate) fn shown([factor, error]: [f64; 2]) -> String {
     // Two digits of the error.
     let digits = if error > 0.0 {
         1 - libm::floor(libm::log10(error)) as i32
@@ -207,82 +207,87 @@ impl Subject<'_> {
                 _ => format!("looks like a factor of the mean {}{named}", shown(factor)),
             });
         };
-        let part = 100.0 * fit.explained.min(1.0);
-        Some(match fit.pattern {
-            Pattern::Constant => {
-                let nearly = if fit.explained < 0.995 { "nearly " } else { "" };
-                let name = shown_names(&names(&list, factor[0], factor[1]));
+        Some(sentence(&fit, factor, &list))
+    }
+}
+
+/// A pattern in words: `factor` is that of the mean with its standard error, `list` has the names of factors.
+pub(crate) fn sentence(fit: &Fit, factor: [f64; 2], list: &[constants::Named]) -> String {
+    let part = 100.0 * fit.explained.min(1.0);
+    match fit.pattern {
+        Pattern::Constant => {
+            let nearly = if fit.explained < 0.995 { "nearly " } else { "" };
+            let name = shown_names(&names(list, factor[0], factor[1]));
+            format!(
+                "looks like a {nearly}constant factor {}{name}",
+                shown(factor)
+            )
+        }
+        Pattern::Power(name, power, [a, e]) => {
+            let raised = match power {
+                1 => format!("proportional to {name}"),
+                -1 => format!("proportional to 1/({name})"),
+                p => format!("proportional to ({name})^{p}"),
+            };
+            let beside = if is_one([a, e]) {
+                String::new()
+            } else {
                 format!(
-                    "looks like a {nearly}constant factor {}{name}",
-                    shown(factor)
+                    ", times {}{}",
+                    shown([a, e]),
+                    shown_names(&names(list, a, e))
                 )
-            }
-            Pattern::Power(name, power, [a, e]) => {
-                let raised = match power {
-                    1 => format!("proportional to {name}"),
-                    -1 => format!("proportional to 1/({name})"),
-                    p => format!("proportional to ({name})^{p}"),
-                };
-                let beside = if is_one([a, e]) {
-                    String::new()
-                } else {
-                    format!(
-                        ", times {}{}",
-                        shown([a, e]),
-                        shown_names(&names(&list, a, e))
-                    )
-                };
-                let what = match (name, power) {
-                    ("the cosine at the receiver", 1) => "a cosine applied twice: a factor ",
-                    ("the cosine at the receiver", -1) => "a cosine forgotten: a factor ",
-                    _ => "a factor ",
-                };
-                format!("looks like {what}{raised}{beside} ({part:.1} % of the residual)")
-            }
-            Pattern::Shift(dx, dy) => {
-                let columns = (dx != 0.0).then(|| format!("{} columns to the right", -0.0 + dx));
-                let rows = (dy != 0.0).then(|| format!("{} rows down", -0.0 + dy));
-                let by = columns
-                    .into_iter()
-                    .chain(rows)
-                    .collect::<Vec<_>>()
-                    .join(" and ");
-                format!("looks like an image moved by {by} ({part:.1} % of the residual)")
-            }
-            Pattern::Flip(across, down) => {
-                let how = match (across, down) {
-                    (true, true) => "turned by 180°",
-                    (true, false) => "mirrored left and right",
-                    _ => "upside down",
-                };
-                format!("looks like an image {how} ({part:.1} % of the residual)")
-            }
-            Pattern::Frame(factor) => format!(
-                "looks like contributions lost or doubled at the edge of the frame: {part:.0} % of the residual is in its \
+            };
+            let what = match (name, power) {
+                ("the cosine at the receiver", 1) => "a cosine applied twice: a factor ",
+                ("the cosine at the receiver", -1) => "a cosine forgotten: a factor ",
+                _ => "a factor ",
+            };
+            format!("looks like {what}{raised}{beside} ({part:.1} % of the residual)")
+        }
+        Pattern::Shift(dx, dy) => {
+            let columns = (dx != 0.0).then(|| format!("{} columns to the right", -0.0 + dx));
+            let rows = (dy != 0.0).then(|| format!("{} rows down", -0.0 + dy));
+            let by = columns
+                .into_iter()
+                .chain(rows)
+                .collect::<Vec<_>>()
+                .join(" and ");
+            format!("looks like an image moved by {by} ({part:.1} % of the residual)")
+        }
+        Pattern::Flip(across, down) => {
+            let how = match (across, down) {
+                (true, true) => "turned by 180°",
+                (true, false) => "mirrored left and right",
+                _ => "upside down",
+            };
+            format!("looks like an image {how} ({part:.1} % of the residual)")
+        }
+        Pattern::Frame(factor) => format!(
+            "looks like contributions lost or doubled at the edge of the frame: {part:.0} % of the residual is in its \
                  outermost pixels, factor {factor:.2} there"
-            ),
-            Pattern::Dark => format!(
-                "looks like light through a surface that should stop it: {part:.0} % of the residual is where the truth has no light"
-            ),
-            Pattern::Bright(factor) => {
-                let what = if factor < 1.0 {
-                    "clamped contributions, or light lost near folds"
-                } else {
-                    "too much light near folds, or where the density of samples is highest"
-                };
-                format!(
-                    "looks like {what}: {part:.0} % of the residual is in the brightest tenth, factor {factor:.2} there"
-                )
-            }
-            Pattern::Edges => format!(
-                "looks like a mistake at edges: {part:.0} % of the residual is where the picture changes abruptly"
-            ),
-        })
+        ),
+        Pattern::Dark => format!(
+            "looks like light through a surface that should stop it: {part:.0} % of the residual is where the truth has no light"
+        ),
+        Pattern::Bright(factor) => {
+            let what = if factor < 1.0 {
+                "clamped contributions, or light lost near folds"
+            } else {
+                "too much light near folds, or where the density of samples is highest"
+            };
+            format!(
+                "looks like {what}: {part:.0} % of the residual is in the brightest tenth, factor {factor:.2} there"
+            )
+        }
+        Pattern::Edges => format!(
+            "looks like a mistake at edges: {part:.0} % of the residual is where the picture changes abruptly"
+        ),
     }
 }
 
 /// ` = π or 2`, or nothing.
-fn shown_names(names: &[String]) -> String {
+pub(crate) fn shown_names(names: &[String]) -> String {
     if names.is_empty() {
         String::new()
     } else {

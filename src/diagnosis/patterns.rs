@@ -118,8 +118,18 @@ impl<'a> Residual<'a> {
         self.truth.len() / self.width
     }
 
+    /// χ² of a pixel of which nothing is said.
+    pub(crate) fn noise_of_pixel(&self) -> f64 {
+        self.noise / self.truth.len() as f64
+    }
+
+    /// By how much a richer pattern must fit better, beyond noise.
+    pub(crate) fn least_gain(&self) -> f64 {
+        GAIN * self.noise_of_pixel()
+    }
+
     /// χ² of a prediction.
-    fn of(&self, predicted: impl Fn(usize) -> f64) -> f64 {
+    pub(crate) fn of(&self, predicted: impl Fn(usize) -> f64) -> f64 {
         let term = |i: usize| {
             let off = self.measured[i] - predicted(i);
             self.weights[i] * off * off
@@ -127,12 +137,12 @@ impl<'a> Residual<'a> {
         (0..self.truth.len()).map(term).sum()
     }
 
-    fn explained(&self, misfit: f64) -> f64 {
+    pub(crate) fn explained(&self, misfit: f64) -> f64 {
         1.0 - (misfit - self.noise).max(0.0) / (self.misfit - self.noise)
     }
 
     /// The factor that fits a shape best over some pixels, and its standard error.
-    fn factor(&self, shape: &[f64], of: impl Fn(usize) -> bool) -> [f64; 2] {
+    pub(crate) fn factor(&self, shape: &[f64], of: impl Fn(usize) -> bool) -> [f64; 2] {
         let (mut product, mut square) = (0.0, 0.0);
         for (i, &s) in shape.iter().enumerate() {
             if of(i) {
@@ -153,7 +163,7 @@ impl<'a> Residual<'a> {
     ) -> Option<Fit> {
         let [factor, _] = self.factor(self.truth, |_| true);
         let constant = self.of(|i| factor * self.truth[i]);
-        let gain = GAIN * self.noise / self.truth.len() as f64;
+        let gain = self.least_gain();
         // Simplest first: what follows must be better by what noise does not give.
         let mut best = (constant, Pattern::Constant);
         let mut consider = |(misfit, pattern): (f64, Pattern)| {

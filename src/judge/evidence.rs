@@ -33,7 +33,7 @@ pub struct Invalid {
 
 impl Invalid {
     /// Looks through a layer whose rows have `width` pixels.
-    fn of_layer(layer: &[f64], width: u32) -> Self {
+    pub fn of_layer(layer: &[f64], width: u32) -> Self {
         let mut found = Invalid::default();
         for (i, &v) in layer.iter().enumerate() {
             if v.is_finite() && v >= 0.0 {
@@ -207,6 +207,7 @@ impl Tally {
             mean: self.mean,
             variance,
             skewness: if skewness.is_finite() { skewness } else { 0.0 },
+            skewness_error: None,
             fewest_contributions: self.fewest.max(self.shown_by_spread(variance)),
             contributions: self.contributions,
             invalid: self.invalid,
@@ -226,6 +227,8 @@ pub struct Sample {
     pub variance: f64,
     /// Skewness of one replicate: third central moment over the variance to 3/2.
     pub skewness: f64,
+    /// A bound on the error of the skewness, where it is known otherwise than from the replicates' means.
+    pub skewness_error: Option<f64>,
     /// Contributions that are not zero, in the replicate that has the fewest; in a part of the image a lower bound, of
     /// their number in the replicate that has the fewest or of their expectation.
     pub fewest_contributions: u64,
@@ -254,7 +257,10 @@ impl Sample {
 
     /// The law of the Studentised mean, towards large means if `above`.
     pub fn tail(&self, above: bool) -> Tail {
-        Tail::new(self.replicates, self.skewness, above)
+        match self.skewness_error {
+            Some(error) => Tail::with_error(self.replicates, self.skewness, error, above),
+            None => Tail::new(self.replicates, self.skewness, above),
+        }
     }
 }
 

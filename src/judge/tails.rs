@@ -24,6 +24,8 @@ use super::distributions::{student_density, student_quantile, student_survival};
 
 /// Up to here the t distribution is used as it is.
 const NEAR: f64 = 3.0;
+/// Beyond this nothing is asked.
+const FAR: f64 = 1e6;
 /// Standard errors of the skewness that are added to it.
 const ALLOWANCE: f64 = 2.0;
 
@@ -35,19 +37,33 @@ pub struct Tail {
     growth: f64,
     /// Up to here the t distribution is used as it is.
     near: f64,
+    /// Whether the skewness counts by the self-normalised sum, which is bounded, as it must for few replicates.
+    is_bounded: bool,
 }
 
 impl Tail {
     /// The tail on the side of large means if `above`, else of small ones, for a sample's number of replicates and their
     /// skewness.
     pub fn new(replicates: usize, skewness: f64, above: bool) -> Self {
+        let error = ALLOWANCE * sqrt(6.0 / replicates as f64);
+        Tail {
+            is_bounded: false,
+            ..Tail::with_error(replicates, skewness, error, above)
+        }
+    }
+
+    /// The same for few replicates, with a skewness that is known to ± `error` otherwise than from so many values. The
+    /// factor is a law of the self-normalised sum y/√(1 + y²/ν), which never exceeds √ν [Jing, Shao & Wang 2003]; for many
+    /// replicates that is y.
+    pub fn with_error(replicates: usize, skewness: f64, error: f64, above: bool) -> Self {
         let n = replicates as f64;
         let towards = if above { -skewness } else { skewness };
-        let bound = (towards + ALLOWANCE * sqrt(6.0 / n)).max(0.0);
+        let bound = (towards + error).max(0.0);
         Tail {
             dof: replicates.saturating_sub(1) as f64,
             growth: bound / (3.0 * sqrt(n)),
             near: NEAR,
+            is_bounded: true,
         }
     }
 
@@ -57,7 +73,17 @@ impl Tail {
     }
 
     fn far(&self, y: f64) -> f64 {
-        student_survival(y, self.dof) * exp(self.growth * y * y * y)
+        student_survival(y, self.dof) * exp(self.exponent(y))
+    }
+
+    /// The logarithm of the factor for skewness.
+    fn exponent(&self, y: f64) -> f64 {
+        let y = if self.is_bounded {
+            y / sqrt(1.0 + y * y / self.dof)
+        } else {
+            y
+        };
+        self.growth * y * y * y
     }
 
     /// Up to where [`Tail::far`] certainly falls: the density over the survival function, at least (ν - 1) y / (ν + y²)
@@ -65,6 +91,9 @@ impl Tail {
     fn turning_point(&self) -> f64 {
         if self.growth == 0.0 {
             return f64::INFINITY;
+        }
+        if self.is_bounded {
+            return FAR;
         }
         let rises = |y: f64| 3.0 * self.growth * y * (self.dof + y * y) > self.dof - 1.0;
         let (mut low, mut high) = (0.0, 1e4);
@@ -104,13 +133,14 @@ impl Tail {
         let mut y = plain;
         for _ in 0..60 {
             let survival = student_survival(y, self.dof);
-            let value = log(survival) + self.growth * y * y * y - target;
+            let value = log(survival) + self.exponent(y) - target;
             if value > 0.0 {
                 low = y;
             } else {
                 high = y;
             }
-            let slope = 3.0 * self.growth * y * y - student_density(y, self.dof) / survival;
+            // Of a bounded exponent about: the bracket has the last word.
+            let slope = 3.0 * self.exponent(y) / y - student_density(y, self.dof) / survival;
             let next = y - value / slope;
             let inside = next > low && next < high;
             let next = if inside { next } else { 0.5 * (low + high) };
@@ -140,12 +170,43 @@ mod tests {
             dof: 63.0,
             growth: 0.0,
             near: NEAR,
+            is_bounded: false,
         };
         for x in [-2.0, 0.0, 1.0, 3.0, 6.0, 20.0] {
             assert_eq!(tail.survival(x), student_survival(x, 63.0));
         }
         assert_eq!(tail.critical(1e-9), student_quantile(1e-9, 63.0));
         assert!(tail.survival(f64::NAN).is_nan());
+    }
+
+    /// With few replicates the bounded factor leaves levels within reach, and is none for many.
+    #[test]
+    fn few_replicates_have_a_bounded_factor() {
+        for (n, error) in [(4, 0.5), (8, 0.1), (16, 0.1), (16, 0.4)] {
+            let tail = Tail::with_error(n, 0.0, error, true);
+            let mut last = 1.0;
+            for i in 0..400 {
+                let p = tail.survival(0.1 * f64::from(i));
+                assert!(p <= last && p >= student_survival(0.1 * f64::from(i), tail.dof()));
+                last = p;
+            }
+            for level in [1e-2, 1e-4, 1e-6] {
+                let x = tail.critical(level);
+                assert!(
+                    x.is_finite() && tail.survival(x) <= level,
+                    "{n} {error} {level}: {x}"
+                );
+                assert!(x <= NEAR + 0.2 || tail.survival(0.99 * x) > level);
+            }
+        }
+        let (few, many) = (
+            Tail::with_error(1 << 20, 0.2, 0.1, true),
+            Tail {
+                is_bounded: false,
+                ..Tail::with_error(1 << 20, 0.2, 0.1, true)
+            },
+        );
+        assert!((few.survival(6.0) / many.survival(6.0) - 1.0).abs() < 1e-3);
     }
 
     #[test]

@@ -25,6 +25,18 @@ pub struct Part {
     pub sample: Sample,
     /// What the mean should be there.
     pub truth: Bounded,
+    /// What it is the mean of.
+    pub measure: Measure,
+}
+
+/// What is measured in a part of the image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// Radiance.
+    #[default]
+    Radiance,
+    /// By how many columns to the right, or rows down, the image has moved.
+    Pixels,
 }
 
 /// All that is known about a check at a look.
@@ -38,6 +50,8 @@ pub struct Case {
     pub weight: f64,
     /// Replicates that there may be in the end: the power is that of going on so far.
     pub most: u64,
+    /// Replicates below which nothing is tested.
+    pub fewest: usize,
     /// p-value of "replicates are independent", and its weight.
     pub dependence: Option<(f64, f64)>,
     /// p-value of "not too bright" at any time, and its weight.
@@ -77,6 +91,7 @@ pub fn decide(sample: &Sample, truth: Bounded, margin: f64, levels: Levels) -> F
         truth,
         weight: 1.0,
         most: sample.replicates as u64,
+        fewest: FEWEST_REPLICATES,
         dependence: None,
         too_bright: None,
         parts: Vec::new(),
@@ -112,7 +127,7 @@ pub fn decide_at(
     if let Some((p, weight)) = case.too_bright {
         spend(spent, p / weight, None);
     }
-    let unmet = unmet_condition(sample);
+    let unmet = unmet_condition(sample, case.fewest);
     if let (Some(reason), false) = (&unmet, spent.different <= levels.different) {
         let mut finding = Finding::bare(State::Undecided, reason);
         finding.replicates_needed =
@@ -121,7 +136,8 @@ pub fn decide_at(
         return finding;
     }
     let equivalent = |sample: &Sample, truth: Bounded| {
-        let has_meaning = unmet_condition(sample).is_none() && truth.value > truth.error;
+        let has_meaning =
+            unmet_condition(sample, case.fewest).is_none() && truth.value > truth.error;
         if has_meaning {
             equivalence_p(sample, truth, margin) / share
         } else {
@@ -139,7 +155,7 @@ pub fn decide_at(
     let tested = || {
         case.parts
             .iter()
-            .filter(|p| unmet_condition(&p.sample).is_none())
+            .filter(|p| unmet_condition(&p.sample, case.fewest).is_none())
     };
     for part in tested() {
         let p = difference_p(&part.sample, part.truth) / (part.weight * share);
@@ -195,8 +211,12 @@ fn about_part(part: &Part) -> String {
         sample,
         truth,
         place,
+        measure,
         ..
     } = part;
+    if *measure == Measure::Pixels {
+        return format!("{place} by {:+.2} pixels", sample.mean);
+    }
     if truth.value > truth.error {
         let effect = 100.0 * (sample.mean - truth.value) / truth.value;
         format!("in {place}: {effect:+.2} %")
@@ -303,10 +323,10 @@ fn light_where_none_is(p_different: f64, levels: Levels) -> Finding {
 }
 
 /// The conditions under which means of replicates are taken to be normal. No variance at all is never evidence.
-fn unmet_condition(sample: &Sample) -> Option<String> {
-    if sample.replicates < FEWEST_REPLICATES {
+fn unmet_condition(sample: &Sample, fewest: usize) -> Option<String> {
+    if sample.replicates < fewest {
         return Some(format!(
-            "{} replicates, {FEWEST_REPLICATES} are needed",
+            "{} replicates, {fewest} are needed",
             sample.replicates
         ));
     }

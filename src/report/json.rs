@@ -1,4 +1,4 @@
-//! For programs: schema `nephroid-verify/1`.
+//! For programs: schemas `nephroid-verify/1` and `nephroid-gate/1`, the same but for the settings.
 
 use serde_json::{Value, json};
 
@@ -13,9 +13,9 @@ pub fn outcome(o: &Outcome) -> Value {
         .map(|n| json!({ "scene": n.scene, "integrator": n.integrator, "reason": n.reason }))
         .collect();
     json!({
-        "schema": "nephroid-verify/1",
+        "schema": format!("nephroid-{}/1", o.program.name()),
         "version": env!("CARGO_PKG_VERSION"),
-        "effort": o.effort.to_string(),
+        "effort": o.effort.map(|e| e.to_string()),
         "seed": o.seed,
         "bandwidth": o.bandwidth,
         "margin": o.margin,
@@ -26,6 +26,7 @@ pub fn outcome(o: &Outcome) -> Value {
         "seconds": o.seconds,
         "verdicts": verdicts,
         "not_run": not_run,
+        "notes": o.notes,
     })
 }
 

@@ -14,7 +14,7 @@ use crate::verify::verdicts::{Outcome, Verdict, WHOLE_IMAGE};
 /// # Errors
 /// What the XML writer says.
 pub fn outcome(o: &Outcome) -> Result<String, String> {
-    let mut report = Report::new("nephroid verify");
+    let mut report = Report::new(format!("nephroid {}", o.program.name()));
     report.set_time(duration(o.seconds));
     let mut suites: Vec<TestSuite> = Vec::new();
     let (mut scene, mut pair) = (None, None);

@@ -7,7 +7,7 @@ use crate::verify::verdicts::Outcome;
 
 /// The whole answer.
 pub fn outcome(o: &Outcome) -> String {
-    let mut page = String::from("# nephroid verify\n\n");
+    let mut page = format!("# nephroid {}\n\n", o.program.name());
     for line in text::summary(o).lines() {
         let _ = writeln!(page, "{line}  ");
     }
@@ -40,6 +40,12 @@ pub fn outcome(o: &Outcome) -> String {
     }
     for line in text::grouped(&o.not_run) {
         let _ = writeln!(page, "- {line}");
+    }
+    if !o.notes.is_empty() {
+        page.push_str("\n## Notes\n\n");
+    }
+    for note in &o.notes {
+        let _ = writeln!(page, "- {note}");
     }
     let mut commands: Vec<_> = o.verdicts.iter().map(|v| &v.command).collect();
     commands.dedup();

@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use crate::judge::finding::{Finding, State};
 use crate::judge::power::DETECTION_POWER;
-use crate::verify::verdicts::{NotRun, Outcome, Verdict};
+use crate::verify::verdicts::{NotRun, Outcome, Program, Verdict};
 
 /// The whole answer, without a final newline.
 pub fn outcome(outcome: &Outcome) -> String {
@@ -28,6 +28,9 @@ pub fn outcome(outcome: &Outcome) -> String {
     }
     for not_run in grouped(&outcome.not_run) {
         let _ = writeln!(text, "not run: {not_run}");
+    }
+    for note in &outcome.notes {
+        let _ = writeln!(text, "note: {note}");
     }
     let _ = write!(text, "\n{}", summary(outcome));
     text
@@ -183,13 +186,11 @@ pub fn summary(o: &Outcome) -> String {
         )
     };
     format!(
-        "{}. Effort {}, α = r = {}, seed {}, {:.1} s.\n\
+        "{}. {}{:.1} s.\n\
          Equivalent: within {} of the truth; a suite says so falsely with probability at most {:e}.\n\
          Different: a suite of correct integrators says so with probability at most {:e}, shared by {}.{weak}",
         counts.join(", "),
-        o.effort,
-        o.bandwidth,
-        o.seed,
+        settings(o),
         o.seconds,
         percent(o.margin),
         o.equivalence_level,
@@ -199,6 +200,17 @@ pub fn summary(o: &Outcome) -> String {
             n => format!("{n} checks"),
         },
     )
+}
+
+/// What was asked for.
+fn settings(o: &Outcome) -> String {
+    let mut parts = Vec::new();
+    parts.extend(o.effort.map(|e| format!("Effort {e}")));
+    parts.extend(o.bandwidth.map(|b| format!("α = r = {b}")));
+    if o.program == Program::Verify {
+        parts.push(format!("seed {}", o.seed));
+    }
+    parts.iter().map(|p| format!("{p}, ")).collect()
 }
 
 fn percent(fraction: f64) -> String {

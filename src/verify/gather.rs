@@ -7,12 +7,12 @@ use super::replicates::{Canvas, FINAL, Seeds, Shape, run_without};
 use super::sizing::{self, Check, Demand, Group, PATHS_BEFORE_MISSING, Size, Source};
 use crate::integrators::Prepared;
 use crate::judge::betting::Bet;
-use crate::judge::evidence::{Invalid, Replicate, Sample, Tally};
+use crate::judge::evidence::{FEWEST_REPLICATES, Invalid, Replicate, Sample, Tally};
 use crate::judge::finding::{Finding, State};
 use crate::judge::heavy::{self, TailIndex};
 use crate::judge::hypotheses::dependence_p;
 use crate::judge::spending::{Look, looks};
-use crate::judge::verdict::{Case, Part, Spent, decide_at};
+use crate::judge::verdict::{Case, Measure, Part, Spent, decide_at};
 use crate::regions::Regions;
 
 /// Replicates that are held in memory at a time.
@@ -356,12 +356,14 @@ impl Subject {
             weight: weights[k],
             sample,
             truth: self.expected.areas()[k],
+            measure: Measure::Radiance,
         });
         let case = Case {
             sample: samples[0],
             truth: self.expected.first(),
             weight: weight * (1.0 - BETTING - INDEPENDENCE),
             most: u64::from(size.most),
+            fewest: FEWEST_REPLICATES,
             dependence: Some((
                 dependence_p(self.tallies[0].correlation(), samples[0].replicates),
                 weight * INDEPENDENCE,

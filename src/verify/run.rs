@@ -13,7 +13,7 @@ use super::metamorphic;
 use super::replicates::{Canvas, Seeds, Shape};
 use super::sizing::Demand;
 use super::suite::{Coverage, LeftOut, Pair, Subject, select};
-use super::verdicts::{ALL_CLASSES, MASK, NotRun, Outcome, Verdict, WHOLE_IMAGE};
+use super::verdicts::{ALL_CLASSES, MASK, NotRun, Outcome, Program, Verdict, WHOLE_IMAGE};
 use crate::error::Error;
 use crate::integrators::{Integrator, Kernel, Plan, Technique, Treatment};
 use crate::judge::family::holm;
@@ -117,21 +117,23 @@ pub fn run(
     settle(&mut verdicts, request.level, checks);
     crate::diagnosis::annotate(request, &mut verdicts, truths)?;
     Ok(Outcome {
+        program: Program::Verify,
         verdicts,
         not_run,
-        effort: request.effort,
+        notes: Vec::new(),
+        effort: Some(request.effort),
         level: request.level,
         equivalence_level: EQUIVALENCE_LEVEL,
         checks,
         margin: request.margin,
-        bandwidth: request.bandwidth,
+        bandwidth: Some(request.bandwidth),
         seed: request.seed,
         seconds: started.elapsed().as_secs_f64(),
     })
 }
 
 /// What is still undecided is decided by the error probability that the decided checks leave: Holm's procedure.
-fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
+pub(crate) fn settle(verdicts: &mut [Verdict], level: f64, checks: u64) {
     let p = |of: fn(&Verdict) -> Option<f64>| -> Vec<f64> {
         verdicts.iter().map(|v| of(v).unwrap_or(f64::NAN)).collect()
     };
@@ -398,7 +400,7 @@ fn command(request: &Request, scene: &str, integrator: &dyn Integrator, checks: 
 }
 
 /// An argument as a POSIX shell reads it back.
-fn quoted(argument: &str) -> String {
+pub(crate) fn quoted(argument: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./".contains(c);
     if argument.chars().all(plain) {
         argument.to_owned()

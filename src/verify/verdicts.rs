@@ -73,15 +73,39 @@ pub struct NotRun {
     pub reason: String,
 }
 
+/// The command that answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Program {
+    /// `nephroid verify`.
+    #[default]
+    Verify,
+    /// `nephroid gate`.
+    Gate,
+}
+
+impl Program {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Program::Verify => "verify",
+            Program::Gate => "gate",
+        }
+    }
+}
+
 /// The answer of a suite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
+    /// The command that answers.
+    pub program: Program,
     /// The verdicts, in the order of scenes, integrators and classes.
     pub verdicts: Vec<Verdict>,
     /// What was left out.
     pub not_run: Vec<NotRun>,
-    /// The effort asked for.
-    pub effort: Effort,
+    /// What else a person should know: how images were read, how they are calibrated.
+    pub notes: Vec<String>,
+    /// The effort asked for; `None` where images are what there is.
+    pub effort: Option<Effort>,
     /// Probability of any false "different" in the suite.
     pub level: f64,
     /// Probability of any false "equivalent" in the suite.
@@ -90,8 +114,8 @@ pub struct Outcome {
     pub checks: u64,
     /// Equivalence margin relative to the truth.
     pub margin: f64,
-    /// Angle [rad] or radius [m] of the mollifiers.
-    pub bandwidth: f64,
+    /// Angle [rad] or radius [m] of the mollifiers; `None` if nothing is regularized.
+    pub bandwidth: Option<f64>,
     /// The user's seed.
     pub seed: u64,
     /// Wall-clock time.

@@ -4,7 +4,7 @@
 
 use crate::synthetic::{Random, normal_sample, of_values, sample, spiky_sample};
 use nephroid::exit;
-use nephroid::judge::evidence::{Invalid, Sample};
+use nephroid::judge::evidence::{FEWEST_REPLICATES, Invalid, Sample};
 use nephroid::judge::finding::{State, exit_code};
 use nephroid::judge::hypotheses::{Levels, difference_p, equivalence_p};
 use nephroid::judge::power::replicates_needed;
@@ -97,6 +97,7 @@ fn looking_often_does_not_raise_false_alarms() {
                     truth: ONE,
                     weight: 1.0,
                     most: 512,
+                    fewest: FEWEST_REPLICATES,
                     dependence: None,
                     too_bright: None,
                     parts: Vec::new(),

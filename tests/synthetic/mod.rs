@@ -53,6 +53,7 @@ pub fn sample(mean: f64, deviation: f64, replicates: usize) -> Sample {
         mean,
         variance: deviation * deviation,
         skewness: 0.0,
+        skewness_error: None,
         fewest_contributions: 1000,
         contributions: 1000 * replicates as u64,
         invalid: Invalid::default(),

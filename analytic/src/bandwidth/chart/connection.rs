@@ -135,7 +135,8 @@ impl<'a> Connection<'a> {
     /// Where a ray from a vertex meets the receiver's plane, and how far that is.
     pub(super) fn ends(&self, s: Vec3<f64>, direction: Vec3<f64>) -> Option<([f64; 2], f64)> {
         let t = (self.receiver.z - s.z) / direction.z;
-        (t > 0.0 && t < f64::INFINITY).then(|| ([s.x + direction.x * t, s.y + direction.y * t], t))
+        let x = [s.x + direction.x * t, s.y + direction.y * t];
+        (t > 0.0 && t < f64::INFINITY).then_some((x, t))
     }
 
     /// Moves the receiver point.

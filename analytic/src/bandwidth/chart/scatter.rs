@@ -38,7 +38,7 @@ pub(in crate::bandwidth) struct Drop {
 /// A family of paths with a kernel of one bandwidth.
 pub(in crate::bandwidth) enum Shower<'a> {
     /// Through one mollified vertex.
-    Connected(Connection<'a>, &'a Caustic, Cap, Technique),
+    Connected(Box<Connection<'a>>, &'a Caustic, Cap, Technique),
     /// Photons of a vertex, or of a bundle, merged within a radius.
     Merged(Box<dyn Integrand + 'a>, f64),
 }
@@ -99,7 +99,12 @@ impl<'a> Shower<'a> {
         let connection = Connection::new(caustic, [0.0; 2], receiver, technique, profile, None);
         match technique {
             Technique::Merge => Shower::Merged(Box::new(connection), bandwidth),
-            _ => Shower::Connected(connection, caustic, Cap::new(kernel, bandwidth), technique),
+            _ => Shower::Connected(
+                Box::new(connection),
+                caustic,
+                Cap::new(kernel, bandwidth),
+                technique,
+            ),
         }
     }
 
