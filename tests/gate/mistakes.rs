@@ -169,7 +169,7 @@ fn other_mistakes_are_told_apart() {
             if v <= 0.0031308 {
                 12.92 * v
             } else {
-                1.055 * v.powf(1.0 / 2.4) - 0.055
+                1.055 * libm::pow(v, 1.0 / 2.4) - 0.055
             }
         })
         .collect();

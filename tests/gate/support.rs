@@ -117,7 +117,7 @@ pub const NOISE: f64 = 0.125;
 pub fn noisy(image: &[f64], seed: u32) -> Image {
     let pixel = |(i, v): (usize, &f64)| {
         let [a, b, ..] = philox([i as u32, seed, 0, 0], [2026, 7]);
-        v * (1.0 + NOISE * (-(1.0 - uniform(a, b)).ln() - 1.0))
+        v * (1.0 + NOISE * (-libm::log(1.0 - uniform(a, b)) - 1.0))
     };
     image.iter().enumerate().map(pixel).collect()
 }
