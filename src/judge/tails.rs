@@ -150,8 +150,12 @@ impl Tail {
                 break;
             }
         }
-        // On the safe side of rounding.
-        y * (1.0 + 1e-11)
+        // On the safe side of rounding, and of steps with a slope that is only about right.
+        let mut margin = 1e-11;
+        while self.far(y * (1.0 + margin)) > level && margin < 1.0 {
+            margin *= 2.0;
+        }
+        y * (1.0 + margin)
     }
 
     /// Degrees of freedom.
