@@ -11,6 +11,7 @@ use nephroid_analytic::scene::Entry;
 use crate::error::Error;
 use crate::foreign::names::is_one_of;
 use crate::gate::command::Command;
+use crate::gate::exported::Exported;
 use crate::gate::request::{LEVEL, MARGIN};
 use crate::gate::truths::{FARTHEST, Regularization, is_offset};
 use crate::gate::{self, Images, Request};
@@ -79,6 +80,9 @@ pub struct Args {
     /// The renderer's image is moved by X columns to the right and Y rows down: quarters of a pixel, at most 8.
     #[arg(long, value_name = "X,Y", default_value = "0,0", value_parser = offset, allow_hyphen_values = true)]
     offset: Offset,
+    /// The directory of `nephroid export` from which the images were made: what its meshes do to a pixel is added to the truth's bound.
+    #[arg(long, value_name = "DIR")]
+    exported: Option<PathBuf>,
     /// Samples in a pixel, for files that tell the variance, or the second moment, of one sample.
     #[arg(long, value_name = "N", value_parser = super::count)]
     spp: Option<u64>,
@@ -205,6 +209,11 @@ fn request(args: &Args) -> Result<Request, Error> {
     if let Some(mask) = &mask {
         mask.fits(&entry)?;
     }
+    let exported = args
+        .exported
+        .as_deref()
+        .map(|dir| Exported::read(dir, &entry))
+        .transpose()?;
     let regularization = match (args.technique, args.bandwidth) {
         (Some(technique), Some(bandwidth)) => Some(Regularization {
             technique,
@@ -259,6 +268,7 @@ fn request(args: &Args) -> Result<Request, Error> {
         offset,
         mask,
         samples: args.spp.map(|n| n as f64),
+        exported,
         seed: args.seed,
     })
 }

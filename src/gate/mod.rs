@@ -9,6 +9,7 @@ pub mod blocks;
 pub mod calibration;
 pub mod checks;
 pub mod command;
+pub mod exported;
 pub mod fit;
 pub mod hypotheses;
 pub mod images;

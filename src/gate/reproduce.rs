@@ -50,6 +50,9 @@ pub fn command(request: &Request) -> String {
     if let Some(mask) = &request.mask {
         add("--mask", quoted(mask.file()));
     }
+    if let Some(exported) = &request.exported {
+        add("--exported", quoted(&exported.directory()));
+    }
     if let Some(samples) = request.samples {
         add("--spp", samples.to_string());
     }

@@ -8,6 +8,7 @@ use nephroid_analytic::scene::Entry;
 use super::calibration;
 use super::checks::{Check, Plan, plan};
 use super::command::Command;
+use super::exported::Exported;
 use super::images::{Images as Layer, check, notes, stacks};
 use super::judged::{FEWEST_IMAGES, Judged, Look};
 use super::reproduce;
@@ -68,6 +69,8 @@ pub struct Request {
     pub mask: Option<Mask>,
     /// Samples in a pixel, where files tell the variance of one and not this.
     pub samples: Option<f64>,
+    /// The exported scene from which the images were made.
+    pub exported: Option<Exported>,
     /// The seed of the seeds.
     pub seed: u64,
 }
@@ -176,6 +179,9 @@ impl<'a> Session<'a> {
         let tolerance = TOLERANCE_PER_MARGIN * request.margin;
         let entry = &request.entry;
         let mut truth = Truth::new(entry, tolerance, request.offset);
+        if let Some(exported) = &request.exported {
+            truth.allow_for(exported.pixel_error);
+        }
         let mut covered = truth.shown.clone();
         let of_files = pictures.first().and_then(|p| p.covered.as_deref());
         let of_mask = request.mask.as_ref().map(Mask::selected);
@@ -398,6 +404,12 @@ impl<'a> Session<'a> {
             notes.push(format!(
                 "values are divided by --gain {}",
                 self.request.gain
+            ));
+        }
+        if let Some(exported) = &self.request.exported {
+            notes.push(format!(
+                "meshes of the exported scene may change a pixel by {:.1e} of the brightest about it: so much is added to the truth's bound",
+                exported.pixel_error
             ));
         }
         if self.request.offset != [0.0; 2] {

@@ -8,6 +8,7 @@ use nephroid_analytic::camera::Bounded;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use super::exported::brightest_about;
 use crate::error::Error;
 use crate::expectation;
 use crate::regions::Regions;
@@ -84,6 +85,23 @@ impl Truth {
         }
     }
 
+    /// Allows for the meshes of an exported scene: a pixel may be off by so much of the brightest about it.
+    pub fn allow_for(&mut self, pixel_error: f64) {
+        let TruthImage {
+            width,
+            layers,
+            errors,
+            ..
+        } = &mut self.image;
+        for (layer, errors) in layers.iter().zip(errors) {
+            let about = brightest_about(layer, *width as usize);
+            errors
+                .iter_mut()
+                .zip(about)
+                .for_each(|(e, b)| *e += pixel_error * b);
+        }
+    }
+
     /// Replaces what a technique regularizes by its exact expectation over the regions.
     ///
     /// # Errors
@@ -131,8 +149,19 @@ impl Truth {
     pub fn areas(&self, classes: &[usize], regions: &Regions) -> Vec<Bounded> {
         let mut sums = vec![Bounded::default(); regions.areas().len()];
         for &class in classes {
-            let exact = || self.image.area_means(class, regions);
-            let areas = self.finite[class].clone().unwrap_or_else(exact);
+            let exact = self.image.area_means(class, regions);
+            let areas = match &self.finite[class] {
+                None => exact,
+                // Meshes do to the regularized image what they do to the exact one.
+                Some(finite) => finite
+                    .iter()
+                    .zip(exact)
+                    .map(|(f, e)| Bounded {
+                        value: f.value,
+                        error: f.error + e.error,
+                    })
+                    .collect(),
+            };
             for (sum, area) in sums.iter_mut().zip(areas) {
                 sum.value += area.value;
                 sum.error += area.error;
