@@ -74,7 +74,7 @@ fn film(entry: &Entry, prepared: &dyn Prepared, bandwidth: f64) -> Film {
 }
 
 /// A fault changes the films of its stands, except the one whose floor is not reached; the healthy method's do not change
-/// when a method with a fault has been prepared beside it. (`integrator_bits.rs` pins the healthy bits.)
+/// when a method with a fault has been prepared beside it. (`integrators/bits.rs` pins the healthy bits.)
 #[test]
 fn a_fault_changes_films_and_health_does_not() {
     for e in all() {
