@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const FIRST: u32 = 1 << 14;
 const MOST: u32 = 1 << 19;
 /// Points of each set, in all, where every pixel is asked for.
-const MOST_FOR_PIXELS: u32 = 1 << 21;
+const MOST_FOR_PIXELS: u32 = 1 << 20;
 /// Parts of a round, so that threads have something to share.
 const PARTS: u32 = 4;
 /// Standard errors of a mean over the sets (seven degrees of freedom) that an error bound allows: beyond are 0.2 %.
