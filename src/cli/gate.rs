@@ -1,6 +1,6 @@
 //! `nephroid gate`: judge the images of any renderer.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,6 +8,7 @@ use nephroid_analytic::bandwidth::{Kernel, SMALLEST_BANDWIDTH, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use crate::entry;
 use crate::error::Error;
 use crate::foreign::names::is_one_of;
 use crate::gate::command::Command;
@@ -16,8 +17,8 @@ use crate::gate::request::{LEVEL, MARGIN};
 use crate::gate::truths::{FARTHEST, Regularization, is_offset};
 use crate::gate::{self, Images, Request};
 use crate::mask::Mask;
-use crate::output::write_text;
-use crate::{entry, report};
+
+use super::answer::Outputs;
 
 /// Judge the images of any renderer against the exact image of a scene.
 ///
@@ -89,15 +90,8 @@ pub struct Args {
     /// Judge only the pixels that are brighter than half in this PNG, which has the size of the image.
     #[arg(long, value_name = "FILE.png")]
     mask: Option<PathBuf>,
-    /// Write a summary to DIR/gate.md.
-    #[arg(long, value_name = "DIR")]
-    report: Option<PathBuf>,
-    /// Write JSON to a file, or to standard output (then nothing else is printed there).
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
-    /// Write JUnit XML to a file.
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: Outputs,
 }
 
 /// Columns to the right and rows down.
@@ -163,37 +157,17 @@ pub fn run(args: &Args) -> Result<u8, Error> {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(200));
-    let outcome = gate::run(&request, &|position, of| {
+    let progress = |position, of| {
         bar.set_length(of);
         bar.set_position(position);
-    });
+    };
+    let judged = match args.outputs.report {
+        Some(_) => gate::run_and_draw(&request, &progress),
+        None => gate::run(&request, &progress).map(|outcome| (outcome, Vec::new())),
+    };
     bar.finish_and_clear();
-    let outcome = outcome?;
-    let json = format!("{:#}\n", report::json::outcome(&outcome));
-    match &args.json {
-        Some(file) if file == Path::new("-") => super::print(json.trim_end()),
-        Some(file) => write_text(file, &json)?,
-        None => {}
-    }
-    if args.json.as_deref() != Some(Path::new("-")) {
-        super::print(&report::text::outcome(&outcome));
-    }
-    if let Some(file) = &args.junit {
-        let xml = report::junit::outcome(&outcome).map_err(|message| Error::Content {
-            file: file.display().to_string(),
-            message,
-            help: "scene names of printable characters".to_owned(),
-        })?;
-        write_text(file, &xml)?;
-    }
-    if let Some(directory) = &args.report {
-        std::fs::create_dir_all(directory)
-            .map_err(|e| Error::read(&directory.display().to_string(), e))?;
-        write_text(
-            &directory.join("gate.md"),
-            &report::markdown::outcome(&outcome),
-        )?;
-    }
+    let (outcome, drawn) = judged?;
+    args.outputs.write(&outcome, &drawn)?;
     Ok(outcome.exit_code())
 }
 

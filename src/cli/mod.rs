@@ -1,5 +1,6 @@
 //! The command line: one file per command, each a thin layer over the library.
 
+mod answer;
 mod bandwidth;
 mod bandwidth_answer;
 mod bench;

@@ -1,6 +1,6 @@
 //! `nephroid verify`: run integrators against exact truths and print verdicts.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,13 +11,14 @@ use crate::error::Error;
 use crate::integrators::{Heuristic, Integrator, Kernel, NAMES, Settings, by_name};
 use crate::judge::hypotheses::LEVEL;
 use crate::mask::Mask;
-use crate::output::write_text;
-use crate::report;
 use crate::verify::effort::{BANDWIDTH, Effort};
 use crate::verify::expected::Truths;
+use crate::verify::pictures;
 use crate::verify::run::{self, Request};
 use crate::verify::suite::{Coverage, LeftOut, Subject};
 use crate::{entry, exit};
+
+use super::answer::Outputs;
 
 /// Judge the reference integrators against exact truths.
 ///
@@ -73,15 +74,8 @@ pub struct Args {
     /// it.
     #[arg(long, value_name = "N", value_parser = super::count)]
     checks: Option<u64>,
-    /// Write a summary to DIR/verify.md.
-    #[arg(long, value_name = "DIR")]
-    report: Option<PathBuf>,
-    /// Write JSON to a file, or to standard output (then nothing else is printed there).
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
-    /// Write JUnit XML to a file.
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: Outputs,
 }
 
 fn in_range(text: &str, low: f64, high: f64) -> Result<f64, String> {
@@ -119,31 +113,11 @@ pub fn run(args: &Args) -> Result<u8, Error> {
     });
     bar.finish_and_clear();
     let outcome = outcome?;
-    let json = format!("{:#}\n", report::json::outcome(&outcome));
-    match &args.json {
-        Some(file) if file == Path::new("-") => super::print(json.trim_end()),
-        Some(file) => write_text(file, &json)?,
-        None => {}
-    }
-    if args.json.as_deref() != Some(Path::new("-")) {
-        super::print(&report::text::outcome(&outcome));
-    }
-    if let Some(file) = &args.junit {
-        let xml = report::junit::outcome(&outcome).map_err(|message| Error::Content {
-            file: file.display().to_string(),
-            message,
-            help: "scene names of printable characters".to_owned(),
-        })?;
-        write_text(file, &xml)?;
-    }
-    if let Some(directory) = &args.report {
-        std::fs::create_dir_all(directory)
-            .map_err(|e| Error::read(&directory.display().to_string(), e))?;
-        write_text(
-            &directory.join("verify.md"),
-            &report::markdown::outcome(&outcome),
-        )?;
-    }
+    let drawn = match args.outputs.report {
+        Some(_) => pictures::draw(&request, &outcome, &mut truths)?,
+        None => Vec::new(),
+    };
+    args.outputs.write(&outcome, &drawn)?;
     if outcome.verdicts.is_empty() {
         return Ok(exit::NOTHING_RAN);
     }

@@ -14,9 +14,10 @@ pub mod fit;
 pub mod hypotheses;
 pub mod images;
 pub mod judged;
+pub mod pictures;
 mod reproduce;
 pub mod request;
 pub mod stack;
 pub mod truths;
 
-pub use request::{Images, Request, run};
+pub use request::{Images, Request, run, run_and_draw};

@@ -11,6 +11,7 @@ use super::command::Command;
 use super::exported::Exported;
 use super::images::{Images as Layer, check, notes, stacks};
 use super::judged::{FEWEST_IMAGES, Judged, Look};
+use super::pictures::Material;
 use super::reproduce;
 use super::truths::{Regularization, Truth};
 use crate::error::Error;
@@ -20,6 +21,7 @@ use crate::judge::hypotheses::{EQUIVALENCE_LEVEL, Levels};
 use crate::judge::verdict::Spent;
 use crate::mask::Mask;
 use crate::regions::Regions;
+use crate::report::comparison::Comparison;
 use crate::verify::replicates::{FINAL, Seeds};
 use crate::verify::run::settle;
 use crate::verify::verdicts::{ALL_CLASSES, MASK, Outcome, Program, Verdict, WHOLE_IMAGE};
@@ -80,6 +82,35 @@ pub struct Request {
 /// # Errors
 /// What cannot be read, does not fit or cannot be run.
 pub fn run(request: &Request, progress: &dyn Fn(u64, u64)) -> Result<Outcome, Error> {
+    let (session, pictures, looks, started) = judge(request, progress)?;
+    Ok(session.outcome(&pictures, looks, started))
+}
+
+/// The same, and pictures for a report.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_and_draw(
+    request: &Request,
+    progress: &dyn Fn(u64, u64),
+) -> Result<(Outcome, Vec<Comparison>), Error> {
+    let (session, pictures, looks, started) = judge(request, progress)?;
+    let material = Material {
+        renderer: &request.name,
+        truth: &session.truth,
+        regions: &session.regions,
+        covered: &session.covered,
+        layers: &session.layers,
+        checks: &session.plan.checks,
+    };
+    let drawn = material.draw();
+    Ok((session.outcome(&pictures, looks, started), drawn))
+}
+
+/// A session in which all is judged, the images, how often they were looked at, and when it began.
+type Judgement<'a> = (Session<'a>, Vec<Picture>, u32, Instant);
+
+fn judge<'a>(request: &'a Request, progress: &dyn Fn(u64, u64)) -> Result<Judgement<'a>, Error> {
     let started = Instant::now();
     let mut pictures = Vec::new();
     let mut session: Option<Session> = None;
@@ -106,7 +137,7 @@ pub fn run(request: &Request, progress: &dyn Fn(u64, u64)) -> Result<Outcome, Er
             allowed: "at least one file, or --command".to_owned(),
         });
     };
-    Ok(session.outcome(&pictures, looks, started))
+    Ok((session, pictures, looks, started))
 }
 
 impl Request {

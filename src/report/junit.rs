@@ -6,8 +6,9 @@ use core::time::Duration;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::text;
+use crate::gate::checks::SEPARATED;
 use crate::judge::finding::State;
-use crate::verify::verdicts::{Outcome, Verdict, WHOLE_IMAGE};
+use crate::verify::verdicts::{MASK, Outcome, Verdict, WHOLE_IMAGE};
 
 /// The whole answer.
 ///
@@ -18,6 +19,7 @@ pub fn outcome(o: &Outcome) -> Result<String, String> {
     report.set_time(duration(o.seconds));
     let mut suites: Vec<TestSuite> = Vec::new();
     let (mut scene, mut pair) = (None, None);
+    let mut ids: Vec<String> = Vec::new();
     for v in &o.verdicts {
         let changed = v.variation.is_some();
         if scene.replace((&v.scene, changed)) != Some((&v.scene, changed)) {
@@ -28,14 +30,32 @@ pub fn outcome(o: &Outcome) -> Result<String, String> {
         let this = (&v.scene, &v.integrator, &v.variation);
         let first = pair.replace(this) != Some(this);
         if let Some(suite) = suites.last_mut() {
-            suite.add_test_case(case(v, if first { v.seconds } else { 0.0 }));
+            let base = format!("{}/{}", v.scene, name(v));
+            let alike = ids.iter().filter(|id| **id == base).count();
+            let id = match alike {
+                0 => base.clone(),
+                n => format!("{base}#{}", n + 1),
+            };
+            ids.push(base);
+            suite.add_test_case(case(v, if first { v.seconds } else { 0.0 }, id));
         }
     }
     report.add_test_suites(suites);
     report.to_string().map_err(|e| e.to_string())
 }
 
-fn case(v: &Verdict, seconds: f64) -> TestCase {
+/// The name does not depend on what was found: the region of a bias is in the message.
+fn name(v: &Verdict) -> String {
+    let place = match (&v.variation, v.region.as_str()) {
+        (Some(variation), _) => variation,
+        (None, MASK) => MASK,
+        (None, SEPARATED) => SEPARATED,
+        _ => WHOLE_IMAGE,
+    };
+    format!("{}/{}/{place}", v.integrator, v.class)
+}
+
+fn case(v: &Verdict, seconds: f64, id: String) -> TestCase {
     let f = &v.finding;
     let mut status = match f.state {
         State::Equivalent => TestCaseStatus::success(),
@@ -51,11 +71,30 @@ fn case(v: &Verdict, seconds: f64) -> TestCase {
         status.set_type(f.state.word());
         status.set_description(format!("again: {}", v.command));
     }
-    // The name does not depend on what was found: the region of a bias is in the message.
-    let place = v.variation.as_deref().unwrap_or(WHOLE_IMAGE);
-    let mut case = TestCase::new(format!("{}/{}/{place}", v.integrator, v.class), status);
+    let mut case = TestCase::new(name(v), status);
     case.set_classname(v.scene.as_str())
         .set_time(duration(seconds));
+    case.extra.insert("id".into(), id.into());
+    let number = |v: Option<f64>| v.map(|v| v.to_string());
+    let properties = [
+        ("seed", Some(v.seed.to_string())),
+        ("level", Some(v.levels.different.to_string())),
+        ("equivalence_level", Some(v.levels.equivalent.to_string())),
+        ("margin", Some(v.margin.to_string())),
+        ("power", number(f.power)),
+        ("effect", number(f.effect)),
+        ("minimum_detectable_bias", number(f.minimum_detectable_bias)),
+        ("region", Some(v.region.clone())),
+        ("replicates", Some(v.replicates.to_string())),
+        ("paths", Some(v.paths.to_string())),
+        ("looks_like", v.looks_like.clone()),
+        ("command", Some(v.command.clone())),
+    ];
+    for (key, value) in properties {
+        if let Some(value) = value {
+            case.add_property((key, value.as_str()));
+        }
+    }
     case
 }
 

@@ -73,7 +73,7 @@ pub fn bias(f: &Finding) -> Option<String> {
 }
 
 /// Rounded down, so that 1 is never claimed.
-fn power(power: f64) -> String {
+pub(super) fn power(power: f64) -> String {
     if power > 0.999 {
         ">0.999".to_owned()
     } else {
@@ -157,6 +157,13 @@ fn pairs_with(not_run: &[NotRun], reason: &str) -> String {
 
 /// How many of each, and what the error probabilities are.
 pub fn summary(o: &Outcome) -> String {
+    let certainty = certainty(o);
+    let (counts, errors) = certainty.split_once('\n').unwrap_or((&certainty, ""));
+    format!("{counts} {}{:.1} s.\n{errors}", settings(o), o.seconds)
+}
+
+/// The same without settings and times.
+pub(super) fn certainty(o: &Outcome) -> String {
     const STATES: [State; 6] = [
         State::Equivalent,
         State::Different,
@@ -186,12 +193,10 @@ pub fn summary(o: &Outcome) -> String {
         )
     };
     format!(
-        "{}. {}{:.1} s.\n\
+        "{}.\n\
          Equivalent: within {} of the truth; a suite says so falsely with probability at most {:e}.\n\
          Different: a suite of correct integrators says so with probability at most {:e}, shared by {}.{weak}",
         counts.join(", "),
-        settings(o),
-        o.seconds,
         percent(o.margin),
         o.equivalence_level,
         o.level,
@@ -213,7 +218,7 @@ fn settings(o: &Outcome) -> String {
     parts.iter().map(|p| format!("{p}, ")).collect()
 }
 
-fn percent(fraction: f64) -> String {
+pub(super) fn percent(fraction: f64) -> String {
     // Through f32, so that 100 × 0.07 does not show its rounding.
     format!("{} %", (100.0 * fraction) as f32)
 }

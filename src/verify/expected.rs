@@ -149,6 +149,14 @@ impl Truths {
         self.exact.get(&scene)
     }
 
+    /// The exact image of a scene, computed if it has not been.
+    pub fn image_of(&mut self, scene: usize, entry: &Entry) -> &TruthImage {
+        let tolerance = self.tolerance;
+        self.exact
+            .entry(scene)
+            .or_insert_with(|| truth::image(entry, tolerance))
+    }
+
     /// Expectations of the regularized classes.
     fn finite(&mut self, entry: &Entry, key: Finite) -> Result<&AreaMeans, Error> {
         let position = match self.finite.iter().position(|(k, _)| *k == key) {

@@ -5,6 +5,7 @@ pub mod excluded;
 pub mod expected;
 pub mod gather;
 pub mod metamorphic;
+pub mod pictures;
 pub mod replicates;
 pub mod run;
 pub mod sizing;
