@@ -2,12 +2,14 @@
 
 use core::fmt::Write as _;
 
+use super::html::words;
 use super::text;
-use crate::verify::verdicts::Outcome;
+use crate::verify::verdicts::{Outcome, Verdict};
 
 /// The whole answer.
 pub fn outcome(o: &Outcome) -> String {
     let mut page = format!("# nephroid {}\n\n", o.program.name());
+    let _ = writeln!(page, "**{}**\n", words::verdict(o).1);
     for line in text::summary(o).lines() {
         let _ = writeln!(page, "{line}  ");
     }
@@ -32,7 +34,7 @@ pub fn outcome(o: &Outcome) -> String {
             f.state.word(),
             text::bias(f).unwrap_or_default(),
             v.paths as f64,
-            f.reason
+            why(v)
         );
     }
     if !o.not_run.is_empty() {
@@ -55,4 +57,15 @@ pub fn outcome(o: &Outcome) -> String {
     }
     page.push_str("```\n");
     page
+}
+
+/// The reason and what it looks like, within a cell of a table.
+fn why(v: &Verdict) -> String {
+    let parts = [Some(v.finding.reason.as_str()), v.looks_like.as_deref()];
+    let parts: Vec<&str> = parts
+        .into_iter()
+        .flatten()
+        .filter(|p| !p.is_empty())
+        .collect();
+    parts.join("; ").replace('|', "\\|").replace('\n', " ")
 }

@@ -6,7 +6,7 @@
 mod histogram;
 mod pictures;
 mod table;
-mod words;
+pub(super) mod words;
 
 use core::fmt::Write as _;
 
