@@ -81,7 +81,6 @@ fn pixels_of_curved_scenes() {
         ("underwater", Technique::Camera),
         ("pillar", Technique::Symmetric),
         ("dome", Technique::Camera),
-        ("cup", Technique::Camera),
         ("glass-ball", Technique::Merge),
     ] {
         let mut scene = load(name);
