@@ -21,6 +21,8 @@ pub(super) struct Sight {
 const STEPS: usize = 60;
 /// Intervals of a wall's arc in which one reflection each is looked for.
 const INTERVALS: usize = 48;
+/// A floor point is the one that is shown if it is as near as this [m].
+const SAME: f64 = 1e-6;
 /// Step of the differences along the film, in pixels.
 const STEP: f64 = 1e-4;
 
@@ -79,21 +81,21 @@ impl Eye {
     pub fn sights(&self, x: [f64; 2], mut found: impl FnMut(Sight)) {
         let floor = vec3(x[0], x[1], 0.0);
         match &self.way {
-            Way::Direct(_) => self.sight(floor, &mut found),
+            Way::Direct(_) => self.sight(x, floor, &mut found),
             Way::Water { height, index } => {
-                self.sight(self.above_water(floor, *height, *index), &mut found);
+                self.sight(x, self.above_water(floor, *height, *index), &mut found);
             }
-            Way::Mirror(Standing::Plane(mirror)) => self.sight(mirror.image(floor), &mut found),
+            Way::Mirror(Standing::Plane(mirror)) => self.sight(x, mirror.image(floor), &mut found),
             Way::Mirror(Standing::Wall(cup)) => {
                 for at in self.reflections(cup, floor).into_iter().flatten() {
-                    self.sight(at, &mut found);
+                    self.sight(x, at, &mut found);
                 }
             }
         }
     }
 
     /// The film point in whose direction a point is, if the scene has its path.
-    fn sight(&self, at: Vec3<f64>, found: &mut impl FnMut(Sight)) {
+    fn sight(&self, x: [f64; 2], at: Vec3<f64>, found: &mut impl FnMut(Sight)) {
         let Some((u, v)) = self.film.project(at) else {
             return;
         };
@@ -101,7 +103,12 @@ impl Eye {
         if !(u >= 0.0 && u < width && v >= 0.0 && v < height && self.sees(u, v)) {
             return;
         }
-        let (_, weight) = self.look(u, v);
+        // Behind a wall or a mirror there are floor points with the same plan that the way does not lead to.
+        let (shown, weight) = self.look(u, v);
+        let is_x = |k: usize| f64::abs(shown[k] - x[k]) < SAME * (1.0 + f64::abs(x[k]));
+        if !(is_x(0) && is_x(1)) {
+            return;
+        }
         let difference = |a: [f64; 2], b: [f64; 2]| {
             let (x, y) = (self.look(a[0], a[1]).0, self.look(b[0], b[1]).0);
             [0, 1].map(|k| (x[k] - y[k]) / (2.0 * STEP))
