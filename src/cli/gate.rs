@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use nephroid_analytic::bandwidth::{Kernel, SMALLEST_BANDWIDTH, Technique};
+use nephroid_analytic::bandwidth::{Kernel, Technique};
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::Entry;
 
+use super::ranges::{bandwidth, in_range, level, margin};
 use crate::entry;
 use crate::error::Error;
 use crate::foreign::names::is_one_of;
@@ -97,25 +98,6 @@ pub struct Args {
 /// Columns to the right and rows down.
 #[derive(Clone, Copy, Debug)]
 struct Offset([f64; 2]);
-
-fn in_range(text: &str, low: f64, high: f64) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|v| (low..=high).contains(v))
-        .ok_or_else(|| format!("expected a number from {low:e} to {high:e}"))
-}
-
-fn margin(text: &str) -> Result<f64, String> {
-    in_range(text, 1e-4, 0.5)
-}
-
-fn level(text: &str) -> Result<f64, String> {
-    in_range(text, 1e-15, 0.1)
-}
-
-fn bandwidth(text: &str) -> Result<f64, String> {
-    in_range(text, SMALLEST_BANDWIDTH, 1e6)
-}
 
 fn seconds(text: &str) -> Result<f64, String> {
     in_range(text, 0.01, 1e6)

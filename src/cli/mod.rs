@@ -15,6 +15,7 @@ mod golden;
 mod list;
 mod probe;
 mod probe_certify;
+mod ranges;
 mod rates;
 mod render;
 mod run;

@@ -6,6 +6,7 @@ use nephroid_analytic::bandwidth::Technique;
 use nephroid_analytic::class::PathClass;
 use nephroid_analytic::scene::{Entry, InvalidParameter};
 
+use super::ranges::{in_range, level};
 use crate::error::Error;
 use crate::exit;
 use crate::integrators::{Heuristic, Integrator, Kernel, Settings, by_name};
@@ -157,18 +158,6 @@ fn corners(text: &str) -> Result<Corners, String> {
         Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Corners([x0, y0, x1, y1])),
         _ => Err(allowed.to_owned()),
     }
-}
-
-fn in_range(text: &str, low: f64, high: f64) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|v| (low..=high).contains(v))
-        .ok_or_else(|| format!("expected a number from {low:e} to {high:e}"))
-}
-
-/// A probability of error.
-fn level(text: &str) -> Result<f64, String> {
-    in_range(text, 1e-15, 0.1)
 }
 
 /// Half of the width of an interval of an exponent.

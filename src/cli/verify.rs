@@ -5,8 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use nephroid_analytic::bandwidth::SMALLEST_BANDWIDTH;
-
+use super::ranges::{bandwidth, level, margin};
 use crate::error::Error;
 use crate::integrators::{Heuristic, Integrator, Kernel, NAMES, Settings, by_name};
 use crate::judge::hypotheses::LEVEL;
@@ -76,25 +75,6 @@ pub struct Args {
     checks: Option<u64>,
     #[command(flatten)]
     outputs: Outputs,
-}
-
-fn in_range(text: &str, low: f64, high: f64) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|v| (low..=high).contains(v))
-        .ok_or_else(|| format!("expected a number from {low:e} to {high:e}"))
-}
-
-fn margin(text: &str) -> Result<f64, String> {
-    in_range(text, 1e-4, 0.5)
-}
-
-fn level(text: &str) -> Result<f64, String> {
-    in_range(text, 1e-15, 0.1)
-}
-
-fn bandwidth(text: &str) -> Result<f64, String> {
-    in_range(text, SMALLEST_BANDWIDTH, 1e6)
 }
 
 /// Runs the command.
